@@ -1,0 +1,1 @@
+"""Ratings turned into statements: the published tables, and what is right for the design."""

@@ -1,0 +1,96 @@
+"""Bad input, said in one sentence: what is wrong, where it stands, how to mend it.
+
+Every room raises `BadInput` for what a user can mend; the command line prints the sentence and exits with 2.
+Importing this module needs neither OpenGL nor any other part of the renderer.
+"""
+
+import difflib
+from collections.abc import Iterable, Mapping, Sequence
+from types import UnionType
+from typing import Any, TypeVar, Union, get_args, get_origin
+
+from pydantic import BaseModel, ConfigDict, ValidationError
+
+
+class BadInput(ValueError):
+    """Something a user can mend. `str(error)` is the one sentence to show."""
+
+
+class Strict(BaseModel):
+    """Base of every settings model: immutable, no unknown keys, no infinities or NaN."""
+
+    model_config = ConfigDict(extra="forbid", frozen=True, allow_inf_nan=False)
+
+
+Model = TypeVar("Model", bound=BaseModel)
+
+
+def nearest(name: str, names: Iterable[str]) -> str:
+    """`; did you mean "..."?` for the closest of `names`, or the list of them when none is close."""
+    names = sorted(names)
+    close = difflib.get_close_matches(name, names, n=1, cutoff=0.5)
+    if close:
+        return f'did you mean "{close[0]}"?'
+    return "choose one of " + ", ".join(f'"{known}"' for known in names)
+
+
+def validated(model: type[Model], data: Mapping[str, Any], source: str) -> Model:
+    """`model` filled from `data`, or `BadInput` naming `source`, the key and the mend for the first thing wrong."""
+    try:
+        return model.model_validate(data)
+    except ValidationError as error:
+        raise BadInput(f"{source}: {first_sentence(error, model)}") from None
+
+
+def first_sentence(error: ValidationError, model: type[BaseModel]) -> str:
+    """The first of pydantic's complaints as `key: value: what to do`."""
+    detail = error.errors(include_url=False)[0]
+    where = detail["loc"]
+    if detail["type"] == "extra_forbidden":
+        names = fields_at(model, where[:-1])
+        return f"{dotted(where)}: unknown key; {nearest(str(where[-1]), names)}"
+    if detail["type"] == "missing":
+        return f"{dotted(where)}: is missing; add it"
+    message = detail["msg"].removeprefix("Value error, ").removeprefix("Input should be ")
+    shown = f"{detail['input']!r}: " if not isinstance(detail["input"], Mapping) else ""
+    must = message if detail["type"] == "value_error" else f"must be {message}"
+    key = f"{dotted(where)}: " if where else ""
+    return f"{key}{shown}{must}"
+
+
+def dotted(where: Sequence[int | str]) -> str:
+    """A pydantic location as a person writes it: `factor[2].levels` (the first entry is [1])."""
+    text = ""
+    for part in where:
+        if isinstance(part, int):
+            text += f"[{part + 1}]"
+        else:
+            text += f".{part}" if text else part
+    return text
+
+
+def fields_at(model: type[BaseModel], where: Sequence[int | str]) -> list[str]:
+    """The field names (or aliases) that the model reached from `model` along `where` knows."""
+    found: list[type[BaseModel]] = [model]
+    for part in where:
+        if isinstance(part, int):
+            continue
+        steps = [m.model_fields.get(part) or by_alias(m, part) for m in found]
+        inner = [submodel for step in steps if step is not None for submodel in models_in(step.annotation)]
+        # a union's own tag is part of the location: stay where we are
+        found = inner or found
+    return sorted({field.alias or name for m in found for name, field in m.model_fields.items()})
+
+
+def by_alias(model: type[BaseModel], alias: str) -> Any:
+    """The field of `model` that is written as `alias` in a file, or None."""
+    return next((field for field in model.model_fields.values() if field.alias == alias), None)
+
+
+def models_in(annotation: Any) -> list[type[BaseModel]]:
+    """Every model class mentioned in a type annotation: `tuple[Factor, ...] | None` -> [Factor]."""
+    if isinstance(annotation, type) and issubclass(annotation, BaseModel):
+        return [annotation]
+    if get_origin(annotation) in (Union, UnionType, tuple, list, dict) or get_args(annotation):
+        return [found for arg in get_args(annotation) for found in models_in(arg)]
+    return []

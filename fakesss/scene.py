@@ -1,0 +1,173 @@
+"""Everything a picture depends on. TOML <-> `Scene`; every field has a unit, a range and a default.
+
+World frame: right-handed, y up, the object scaled so that its bounding sphere has radius 1 and is centred at the
+origin, its front towards +z. Colours are linear-light RGB with sRGB primaries.
+Symbols in brackets are those of equation 3.6 in Gascons, *Fast simulation of translucent objects* (2011).
+"""
+
+import hashlib
+import json
+import tomllib
+from collections.abc import Iterator, Mapping
+from pathlib import Path
+from typing import Annotated, Any, Literal, Self
+
+from pydantic import BaseModel, Field
+
+from fakesss.problem import BadInput, Strict, nearest, validated
+
+Unit = Annotated[float, Field(ge=0, le=1)]
+NonNegative = Annotated[float, Field(ge=0)]
+Albedo = tuple[Unit, Unit, Unit]
+Intensity = tuple[NonNegative, NonNegative, NonNegative]
+Pixels = Annotated[int, Field(ge=1, le=16384)]
+
+
+class Material(Strict):
+    """What the object is made of, as far as the empirical model knows."""
+
+    diffuse: Albedo = Field((0.62, 0.30, 0.10), description="diffuse reflectance [Kd], linear RGB, 0..1")
+    ambient: NonNegative = Field(1.0, description="ambient reflection coefficient [ka], no unit")
+    specular: NonNegative = Field(0.35, description="specular reflection coefficient [ks], no unit")
+    shininess: Annotated[float, Field(ge=0, le=1e5)] = Field(80.0, description="Blinn-Phong exponent [n], no unit")
+    thickness_exponent: Annotated[float, Field(ge=0, le=1e5)] = Field(
+        25.0, description="fall-off of the backlight with thickness [r], no unit"
+    )
+    backlight: float = Field(1.2, description="backlight contribution [wb], no unit")
+    diffuse_weight: float = Field(0.2, description="added to every channel of the backlight's colour [Kb]")
+    diffuse_contribution: float = Field(0.35, description="weight of the diffuse term [wd], no unit")
+    specular_contribution: float = Field(1.0, description="weight of the specular term [ws], no unit")
+
+
+class Light(Strict):
+    """The movable light. It adds ambient, diffuse and specular terms; the backlight is always behind the object."""
+
+    azimuth: float = Field(-35.0, description="degrees around +y from +z (towards the viewer) to +x (right)")
+    elevation: Annotated[float, Field(ge=-90, le=90)] = Field(50.0, description="degrees above the horizon")
+    ambient: Intensity = Field((0.18, 0.18, 0.18), description="ambient intensity [Ia], linear RGB")
+    diffuse: Intensity = Field((1.0, 1.0, 1.0), description="diffuse intensity [Id], linear RGB")
+    specular: Intensity = Field((1.0, 1.0, 1.0), description="specular intensity [Is], linear RGB")
+
+
+class Camera(Strict):
+    """A perspective camera that looks at the centre of the bounding sphere."""
+
+    azimuth: float = Field(0.0, description="degrees around +y from +z to +x")
+    elevation: Annotated[float, Field(ge=-90, le=90)] = Field(8.0, description="degrees above the horizon")
+    field_of_view: Annotated[float, Field(ge=1, le=170)] = Field(
+        30.0, description="angle of the shorter side of the picture, degrees"
+    )
+    distance: Annotated[float, Field(gt=0)] | None = Field(
+        None, description="from the sphere's centre, in sphere radii; empty: the sphere just fills the shorter side"
+    )
+    near: Annotated[float, Field(gt=0)] | None = Field(
+        None, description="near clip distance in sphere radii; empty: fitted to the sphere (eq. 3.4)"
+    )
+    far: Annotated[float, Field(gt=0)] | None = Field(
+        None, description="far clip distance in sphere radii; empty: fitted to the sphere (eq. 3.4)"
+    )
+
+
+class Occlusion(Strict):
+    """Baked per-vertex ambient occlusion [a]: the share of rays over the normal's hemisphere that hit nothing."""
+
+    enabled: bool = Field(True, description="false: every vertex sees the whole hemisphere (a = 1)")
+    rays: Annotated[int, Field(ge=1, le=65536)] = Field(320, description="rays per vertex")
+    sampling: Literal["cosine", "uniform"] = Field(
+        "cosine", description="cosine: irradiance-weighted; uniform: plain share of the hemisphere"
+    )
+
+
+class Blur(Strict):
+    """The depth-aware 5x5 Gaussian over the second layer (thesis section 3.1, appendix C.2.2)."""
+
+    enabled: bool = Field(True, description="false: the second layer is used as it is")
+    step: Annotated[float, Field(gt=0, le=0.25)] = Field(
+        1 / 256, description="distance between taps, in sphere diameters as seen at the sphere's centre"
+    )
+    depth_range: Annotated[float, Field(gt=0, le=1)] = Field(
+        0.10, description="depth difference at which a tap's weight reaches 0, in sphere diameters"
+    )
+
+
+class Scene(Strict):
+    """One picture, complete: equal scenes give equal bytes on one OpenGL renderer."""
+
+    object: str = Field("figure", description='built-in name, "name:faces", or a mesh file')
+    size: tuple[Pixels, Pixels] = Field((512, 512), description="width, height in pixels")
+    style: Literal["default", "as published"] = Field(
+        "default", description="as published: the 2011 program's deterministic flaws (docs/technique.md)"
+    )
+    background: Albedo = Field((0.0, 0.0, 0.0), description="linear RGB behind the object, 0..1")
+    exposure: NonNegative = Field(1.0, description="factor on the object's radiance before display")
+    supersampling: Annotated[int, Field(ge=1, le=8)] = Field(3, description="n: n x n samples a pixel, box filter")
+    open_surface: Literal["thin", "thick"] = Field(
+        "thin", description="thickness of a pixel with no second layer: thin 0 (a sheet), thick 1 (opaque)"
+    )
+    material: Material = Material()
+    light: Light = Light()
+    camera: Camera = Camera()
+    occlusion: Occlusion = Occlusion()
+    blur: Blur = Blur()
+
+    @classmethod
+    def load(cls, path: str | Path) -> Self:
+        """The scene in a TOML file (the fields of `[scene]` at top level); a mesh path is relative to the file."""
+        path = Path(path)
+        scene = cls.from_dict(read_toml(path), str(path))
+        return scene.relative_to(path.parent)
+
+    @classmethod
+    def from_dict(cls, data: Mapping[str, Any], source: str) -> Self:
+        """The scene described by `data`; errors name `source`, the key and the mend."""
+        return validated(cls, data, source)
+
+    def relative_to(self, folder: Path) -> Self:
+        """The same scene with a mesh file's path taken from `folder` (built-in names stay)."""
+        beside = folder / self.object
+        return self.model_copy(update={"object": str(beside)}) if beside.is_file() else self
+
+    def replace(self, changes: Mapping[str, Any], source: str = "scene") -> Self:
+        """A copy with `{"material.backlight": 0.8}` applied and checked again."""
+        data = self.model_dump()
+        for path, value in changes.items():
+            *parents, leaf = check_path(path, source).split(".")
+            place = data
+            for parent in parents:
+                place = place[parent]
+            place[leaf] = value
+        return self.from_dict(data, source)
+
+    def sha256(self) -> str:
+        """Hash of every field, for naming and for telling stale pictures."""
+        return hashlib.sha256(json.dumps(self.model_dump(mode="json"), sort_keys=True).encode()).hexdigest()
+
+
+def read_toml(path: Path) -> dict[str, Any]:
+    """The tables of a TOML file, or `BadInput` naming the file and the line."""
+    try:
+        return tomllib.loads(path.read_text(encoding="utf-8"))
+    except FileNotFoundError:
+        raise BadInput(f"{path}: no such file; check the path") from None
+    except (OSError, UnicodeDecodeError) as error:
+        raise BadInput(f"{path}: cannot be read ({error}); it must be a readable UTF-8 text file") from None
+    except tomllib.TOMLDecodeError as error:
+        raise BadInput(f"{path}: not valid TOML: {error}") from None
+
+
+def scene_paths(model: type[BaseModel] = Scene, prefix: str = "") -> Iterator[str]:
+    """Every path a factor may vary: `material.backlight`, `size`, ..."""
+    for name, field in model.model_fields.items():
+        inner = field.annotation
+        if isinstance(inner, type) and issubclass(inner, BaseModel):
+            yield from scene_paths(inner, f"{prefix}{name}.")
+        else:
+            yield f"{prefix}{name}"
+
+
+def check_path(path: str, source: str) -> str:
+    """`path` if it is a scene field, otherwise `BadInput` with the nearest valid one."""
+    known = list(scene_paths())
+    if path not in known:
+        raise BadInput(f'{source}: path "{path}" is no scene field; {nearest(path, known)}')
+    return path
