@@ -23,6 +23,12 @@ class Strict(BaseModel):
 
 
 Model = TypeVar("Model", bound=BaseModel)
+COMPARISONS = (
+    ("greater than or equal to", ">="),
+    ("less than or equal to", "<="),
+    ("greater than", ">"),
+    ("less than", "<"),
+)
 
 
 def nearest(name: str, names: Iterable[str]) -> str:
@@ -52,6 +58,8 @@ def first_sentence(error: ValidationError, model: type[BaseModel]) -> str:
     if detail["type"] == "missing":
         return f"{dotted(where)}: is missing; add it"
     message = detail["msg"].removeprefix("Value error, ").removeprefix("Input should be ")
+    for words, sign in COMPARISONS:
+        message = message.replace(words, sign)
     shown = f"{detail['input']!r}: " if not isinstance(detail["input"], Mapping) else ""
     must = message if detail["type"] == "value_error" else f"must be {message}"
     key = f"{dotted(where)}: " if where else ""

@@ -1,0 +1,105 @@
+"""One stimulus made: drawn by the renderer, or read from a file made elsewhere and checked."""
+
+import hashlib
+import json
+from dataclasses import dataclass
+from functools import cache
+from importlib.metadata import version
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+import fakesss
+from fakesss.problem import BadInput
+from stimuli.design import Stimulus
+from stimuli.manifest import sha256
+
+
+@dataclass(frozen=True)
+class Drawn:
+    """A picture's PNG bytes and what is to be said of it."""
+
+    png: bytes
+    width: int
+    height: int
+    passes: tuple[str, ...]
+    warnings: tuple[str, ...]
+
+    def facts(self) -> dict[str, Any]:
+        """The picture's side of its manifest entry."""
+        return {
+            "sha256": sha256(self.png),
+            "width": self.width,
+            "height": self.height,
+            "passes": list(self.passes),
+            "warnings": list(self.warnings),
+        }
+
+
+def software() -> dict[str, str]:
+    """Who draws: the manifest's `software` table. Opens the OpenGL context."""
+    from fakesss.gpu import renderer_facts
+
+    return {"fakesss": fakesss.__version__, "moderngl": version("moderngl"), **renderer_facts()}
+
+
+def build_key(stimulus: Stimulus, size: tuple[int, int], folder: Path, made_by: dict[str, str]) -> str:
+    """Hash of everything the picture's bytes depend on."""
+    depends: dict[str, Any] = {"software": made_by, "source": source_sha256(), "size": size}
+    if stimulus.scene is None:
+        depends["image"] = file_sha256(folder / str(stimulus.image))
+    else:
+        depends["scene"] = stimulus.scene.model_dump(mode="json")
+        mesh = folder / stimulus.scene.object
+        depends["mesh"] = file_sha256(mesh) if mesh.is_file() else None
+    return sha256(json.dumps(depends, sort_keys=True).encode())
+
+
+def draw(stimulus: Stimulus, *, size: tuple[int, int], folder: Path) -> Drawn:
+    """The stimulus as PNG bytes at `size` (width, height)."""
+    if stimulus.scene is None:
+        return read_made_elsewhere(stimulus, size, folder)
+    from fakesss.image_io import encode_png
+    from fakesss.renderer import shared_renderer
+
+    drawn = shared_renderer().render(stimulus.scene.relative_to(folder))
+    height, width = drawn.image.shape[:2]
+    passes = tuple(timing["name"] for timing in drawn.passes)
+    return Drawn(encode_png(drawn.image), width, height, passes, tuple(drawn.warnings))
+
+
+def read_made_elsewhere(stimulus: Stimulus, size: tuple[int, int], folder: Path) -> Drawn:
+    """A comparison picture, its pixels unchanged, as a PNG that states its colour space."""
+    from fakesss.image_io import encode_png8, read_picture
+
+    path = folder / str(stimulus.image)
+    pixels, warnings = read_picture(path)
+    height, width = pixels.shape[:2]
+    if (width, height) != size:
+        raise BadInput(
+            f"study.toml: compare {stimulus.image!r}: is {width}x{height} but the study's pictures are {size[0]}x{size[1]}; "
+            "resize it or set scene.size"
+        )
+    return Drawn(encode_png8(np.ascontiguousarray(pixels)), width, height, (), tuple(warnings))
+
+
+def file_sha256(path: Path) -> str:
+    """SHA-256 of a file the study names, or `BadInput`."""
+    try:
+        return sha256(path.read_bytes())
+    except OSError as error:
+        raise BadInput(
+            f"study.toml: {path.name}: cannot be read ({error.strerror}); check the file's name and place"
+        ) from None
+
+
+@cache
+def source_sha256() -> str:
+    """Hash of the renderer's own source, so that a changed shader makes its pictures stale."""
+    root = Path(fakesss.__file__).parent
+    digest = hashlib.sha256()
+    for path in sorted([*root.rglob("*.py"), *root.rglob("glsl/*")]):
+        if path.is_file() and path.name != "cli.py":
+            digest.update(path.relative_to(root).as_posix().encode() + b"\0" + path.read_bytes())
+    return digest.hexdigest()

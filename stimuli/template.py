@@ -1,0 +1,23 @@
+"""`fakesss new`: commented study files to start from."""
+
+from importlib.resources import files
+from pathlib import Path
+
+from fakesss.problem import BadInput, nearest
+from stimuli.manifest import write_atomically
+
+
+def template_names() -> list[str]:
+    """The templates shipped: thesis, minimal, factorial."""
+    return sorted(entry.name.removesuffix(".toml") for entry in (files("stimuli") / "templates").iterdir())
+
+
+def write_template(folder: Path, name: str = "thesis") -> Path:
+    """`folder/study.toml` from a template; an existing study is never overwritten."""
+    if name not in template_names():
+        raise BadInput(f'template "{name}" is not known; {nearest(name, template_names())}')
+    path = folder / "study.toml"
+    if path.exists():
+        raise BadInput(f"{path}: exists already; choose another folder or edit it")
+    write_atomically(path, (files("stimuli") / "templates" / f"{name}.toml").read_bytes())
+    return path
