@@ -50,7 +50,9 @@ def validated(model: type[Model], data: Mapping[str, Any], source: str) -> Model
 
 def first_sentence(error: ValidationError, model: type[BaseModel]) -> str:
     """The first of pydantic's complaints as `key: value: what to do`."""
-    detail = error.errors(include_url=False)[0]
+    details = error.errors(include_url=False)
+    # a misspelt required key is both unknown and missing; the misspelling is what helps
+    detail = next((d for d in details if d["type"] == "extra_forbidden"), details[0])
     where = detail["loc"]
     if detail["type"] == "extra_forbidden":
         names = fields_at(model, where[:-1])

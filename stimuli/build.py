@@ -1,8 +1,8 @@
 """`fakesss build`: draws what is missing or stale, then writes the manifest. Resumable at every picture.
 
 Each picture has a build key: the hash of everything its bytes depend on (scene, mesh file, renderer's source, OpenGL
-renderer). Drawn pictures wait in `stimuli/.build/<key>.png` until all are there; then they get their names, and the manifest
-is written last.
+renderer). Drawn pictures wait in `stimuli/.build/<key>.png` until all are there; then they get their names, and the
+manifest is written last.
 """
 
 import functools

@@ -29,8 +29,8 @@ class Stimulus:
 def stimuli_of(study: Study) -> list[Stimulus]:
     """Every stimulus of the study in presentation-neutral order: factor rows, comparison pictures, repeats.
 
-    Identities follow the published numbering (`img01` is the thesis's image 1). With `identical = "show-once"` a picture that
-    several rows share is listed once and belongs to all of them.
+    Identities follow the published numbering (`img01` is the thesis's image 1). With `identical = "show-once"` a
+    picture that several rows share is listed once and belongs to all of them.
     """
     drawn = list(one_at_a_time(study) if study.design.kind == "one-at-a-time" else full_factorial(study))
     if study.design.identical == "show-once":

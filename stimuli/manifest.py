@@ -2,7 +2,6 @@
 
 import hashlib
 import json
-import os
 import tempfile
 from pathlib import Path
 from typing import Any
@@ -73,10 +72,10 @@ def write_atomically(path: Path, content: bytes) -> None:
         with tempfile.NamedTemporaryFile(dir=path.parent, prefix=f".{path.name}.", delete=False) as file:
             file.write(content)
             Path(file.name).chmod(0o644)
-        os.replace(file.name, path)
+        Path(file.name).replace(path)
     except OSError as error:
         raise BadInput(
-            f"{path}: cannot be written ({error.strerror}); check the folder's permissions and space"
+            f"{path}: cannot be written ({error.strerror or error}); check the folder's permissions and space"
         ) from None
 
 

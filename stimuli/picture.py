@@ -78,8 +78,8 @@ def read_made_elsewhere(stimulus: Stimulus, size: tuple[int, int], folder: Path)
     height, width = pixels.shape[:2]
     if (width, height) != size:
         raise BadInput(
-            f"study.toml: compare {stimulus.image!r}: is {width}x{height} but the study's pictures are {size[0]}x{size[1]}; "
-            "resize it or set scene.size"
+            f"study.toml: compare {stimulus.image!r}: is {width}x{height} but the study's pictures are "
+            f"{size[0]}x{size[1]}; resize it or set scene.size"
         )
     return Drawn(encode_png8(np.ascontiguousarray(pixels)), width, height, (), tuple(warnings))
 
@@ -90,7 +90,7 @@ def file_sha256(path: Path) -> str:
         return sha256(path.read_bytes())
     except OSError as error:
         raise BadInput(
-            f"study.toml: {path.name}: cannot be read ({error.strerror}); check the file's name and place"
+            f"study.toml: {path.name}: cannot be read ({error.strerror or error}); check the file's name and place"
         ) from None
 
 
