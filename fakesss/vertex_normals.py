@@ -1,0 +1,116 @@
+"""Normals at vertices: smooth over gentle edges, hard at creases.
+
+A vertex normal is the mean of the surrounding triangles' normals weighted by their angle at the vertex (Thürmer and
+Wüthrich, *Computing vertex normals from polygonal facets*, 1998), which does not depend on how the surface was cut
+into triangles. It is not an estimate of curvature and reads no normals stored in files.
+"""
+
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.sparse import coo_array
+from scipy.sparse.csgraph import connected_components
+
+from fakesss.mesh_repair import half_edge_pairs
+
+Floats = NDArray[np.float64]
+Floats32 = NDArray[np.float32]
+Faces = NDArray[np.int32]
+
+CREASE_DEGREES = (
+    60.0  # between face normals; a box (90) keeps its edges, a coarse scan of a smooth body does not get any
+)
+
+
+def normalised(vectors: Floats) -> Floats:
+    """Unit vectors along (..., 3) `vectors`; a zero vector stays zero."""
+    length = np.sqrt((vectors**2).sum(axis=-1, keepdims=True))
+    return np.divide(vectors, length, out=np.zeros_like(vectors), where=length > 0)
+
+
+def face_normals(positions: NDArray[np.floating[Any]], faces: Faces) -> Floats:
+    """Unit normals (F, 3) in float64; zero for a triangle without area."""
+    a, b, c = (positions[faces[:, corner]].astype(np.float64) for corner in range(3))
+    # scaled before the product, so that a tiny triangle keeps its direction
+    return normalised(np.cross(normalised(b - a), normalised(c - a)))
+
+
+def corner_angles(positions: NDArray[np.floating[Any]], faces: Faces) -> Floats:
+    """The triangles' angles (F, 3), radians, at their three corners."""
+    points = positions[faces].astype(np.float64)
+    sides = normalised(np.roll(points, -1, axis=1) - points)  # from each corner to the next
+    return np.arccos(np.clip(-(sides * np.roll(sides, 1, axis=1)).sum(axis=2), -1, 1))
+
+
+def with_creases(positions: Floats32, faces: Faces) -> tuple[Floats32, Floats32, Faces]:
+    """Positions and normals (V', 3) and faces (F, 3), vertices on creases split so that each side has its own normal.
+
+    A crease is an edge where the face normals differ by more than `CREASE_DEGREES`, or one shared by more than two
+    triangles. Where the weighted normals cancel, the vertex takes the normal of one of its triangles, and where none
+    has any area, the direction away from the centre.
+    """
+    flat = face_normals(positions, faces)
+    origin, faces = split_at_creases(len(positions), faces, flat)
+    positions = positions[origin]
+    weighted = corner_angles(positions, faces)[:, :, None] * flat[:, None, :]
+    total = np.stack(
+        [np.bincount(faces.ravel(), weighted[:, :, axis].ravel(), len(positions)) for axis in range(3)], axis=1
+    )
+    normals = normalised(total)
+    cancelled = (total**2).sum(axis=1) < 1e-20
+    some_face = np.zeros((len(positions), 3))
+    has_area = (flat**2).sum(axis=1) > 0
+    some_face[faces[has_area]] = flat[has_area][:, None, :]
+    normals[cancelled] = some_face[cancelled]
+    still_zero = ~normals.any(axis=1)
+    outward = positions[still_zero].astype(np.float64)
+    normals[still_zero] = np.where(outward.any(axis=1, keepdims=True), normalised(outward), (0.0, 0.0, 1.0))
+    return positions, normals.astype(np.float32), faces
+
+
+def split_at_creases(vertices: int, faces: Faces, flat: Floats) -> tuple[NDArray[np.int64], Faces]:
+    """For each new vertex the old one it copies, and the faces in new vertices; no crease: nothing changes."""
+    half_a, half_b = half_edge_pairs(faces)
+    smooth = (flat[half_a // 3] * flat[half_b // 3]).sum(axis=1) >= np.cos(np.radians(CREASE_DEGREES))
+    # a half-edge that no smooth pair joins to a neighbour lies on a crease, a border or a many-sided edge
+    joined = np.zeros(faces.size, bool)
+    joined[half_a[smooth]] = joined[half_b[smooth]] = True
+    corner_vertex = faces.ravel()
+    following = np.roll(faces, -1, axis=1).ravel()
+    on_crease = np.zeros(vertices, bool)
+    on_crease[corner_vertex[~joined]] = on_crease[following[~joined]] = True
+    touched = np.flatnonzero(on_crease[corner_vertex])
+    if not len(touched):
+        return np.arange(vertices), faces
+    fans = corner_fans(faces, half_a[smooth], half_b[smooth], touched)
+    # the first fan of a vertex keeps its index, the others are appended
+    _, first, inverse = np.unique(fans, return_index=True, return_inverse=True)
+    old = corner_vertex[touched[first]].astype(np.int64)
+    order = np.argsort(old, kind="stable")
+    repeated = np.concatenate([[False], old[order][1:] == old[order][:-1]])
+    new = old.copy()
+    new[order[repeated]] = vertices + np.arange(repeated.sum())
+    corners = corner_vertex.copy()
+    corners[touched] = new[inverse]
+    return np.concatenate([np.arange(vertices), old[order[repeated]]]), corners.reshape(-1, 3)
+
+
+def corner_fans(
+    faces: Faces, half_a: NDArray[np.int64], half_b: NDArray[np.int64], touched: NDArray[np.int64]
+) -> NDArray[np.int32]:
+    """A label for each of the `touched` corners; equal where a walk over smooth edges around the vertex joins them."""
+    place = np.full(faces.size, -1)
+    place[touched] = np.arange(len(touched))
+    corner_vertex = faces.ravel()
+    next_corner = np.roll(np.arange(faces.size).reshape(-1, 3), -1, axis=1).ravel()
+    same_way = corner_vertex[half_a] == corner_vertex[half_b]  # an edge that both triangles walk in one direction
+    ends_a = np.concatenate([half_a, next_corner[half_a]])
+    ends_b = np.concatenate(
+        [np.where(same_way, half_b, next_corner[half_b]), np.where(same_way, next_corner[half_b], half_b)]
+    )
+    inside = (place[ends_a] >= 0) & (place[ends_b] >= 0)
+    rows, columns = place[ends_a[inside]], place[ends_b[inside]]
+    graph = coo_array((np.ones(len(rows), bool), (rows, columns)), shape=(len(touched),) * 2)
+    labels: NDArray[np.int32] = connected_components(graph, directed=False)[1]
+    return labels
