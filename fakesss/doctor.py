@@ -1,0 +1,110 @@
+"""`fakesss doctor`: what this machine has of what a study needs, and the line that mends what is missing."""
+
+import shutil
+import sqlite3
+import sys
+import tempfile
+from collections.abc import Callable, Iterator
+from dataclasses import asdict, dataclass
+from importlib.metadata import version
+from pathlib import Path
+from typing import Any
+
+from fakesss.problem import BadInput
+
+BROWSERS = ("chromium", "chromium-browser", "google-chrome", "google-chrome-stable")
+
+
+@dataclass(frozen=True)
+class Finding:
+    """One thing looked for. `needed_for` names the work that cannot be done without it."""
+
+    name: str
+    found: bool
+    version: str
+    needed_for: str
+    mend: str
+
+
+def look() -> list[Finding]:
+    """Every finding, in the order a study needs them."""
+    return [
+        finding("Python", python, "everything", "install Python 3.11 or newer"),
+        finding("OpenGL", opengl, "building pictures", "apt-get install libegl1 libgl1 libegl-mesa0 libgl1-mesa-dri"),
+        finding("Embree", embree, "ambient occlusion", "pip install embreex"),
+        finding("database", database, "the survey", "use a Python built with SQLite 3.35 or newer"),
+        finding("cache folder", cache_folder, "keeping baked occlusion", "set FAKESSS_CACHE to a writable folder"),
+        finding("browser", browser, "the tests", "apt-get install chromium"),
+    ]
+
+
+def report(findings: list[Finding]) -> dict[str, Any]:
+    """The findings as one JSON document; `ok` means that a study can be built and served."""
+    ok = all(f.found for f in findings if f.needed_for != "the tests")
+    return {"ok": ok, "findings": [asdict(f) for f in findings]}
+
+
+def lines(findings: list[Finding]) -> Iterator[str]:
+    """The findings as a person reads them."""
+    for f in findings:
+        if f.found:
+            yield f"  found    {f.name:13} {f.version}"
+        else:
+            yield f"  MISSING  {f.name:13} {f.version}; needed for {f.needed_for}; mend: {f.mend}"
+
+
+def finding(name: str, probe: Callable[[], str], needed_for: str, mend: str) -> Finding:
+    """What `probe` says of the thing, or why it is not there."""
+    try:
+        return Finding(name, True, probe(), needed_for, mend)
+    except (BadInput, ImportError, OSError, sqlite3.Error) as error:
+        return Finding(name, False, str(error), needed_for, mend)
+
+
+def python() -> str:
+    """The interpreter's version."""
+    if sys.version_info < (3, 11):
+        raise BadInput(f"{sys.version.split()[0]} is older than 3.11")
+    return sys.version.split()[0]
+
+
+def opengl() -> str:
+    """Renderer and version of the context that pictures are drawn with."""
+    from fakesss.gpu import renderer_facts
+
+    facts = renderer_facts()
+    return f"{facts['gl_version']}, {facts['gl_renderer']}"
+
+
+def embree() -> str:
+    """The version of the ray-casting library, loaded."""
+    from embreex import rtcore_scene  # noqa: F401
+
+    return f"embreex {version('embreex')}"
+
+
+def database() -> str:
+    """SQLite's version, after a write-ahead-log commit on disk."""
+    with tempfile.TemporaryDirectory() as folder:
+        connection = sqlite3.connect(Path(folder) / "probe.sqlite")
+        mode = connection.execute("PRAGMA journal_mode = WAL").fetchone()[0]
+        connection.close()
+    if mode != "wal" or sqlite3.sqlite_version_info < (3, 35):
+        raise BadInput(f"SQLite {sqlite3.sqlite_version}, journal mode {mode}")
+    return f"SQLite {sqlite3.sqlite_version}"
+
+
+def cache_folder() -> str:
+    """The folder baked data is kept in, after a write into it."""
+    from fakesss.cache import cache_folder as folder
+
+    with tempfile.TemporaryFile(dir=folder()):
+        return str(folder())
+
+
+def browser() -> str:
+    """A Chromium that the browser tests can drive."""
+    path = next((found for name in BROWSERS if (found := shutil.which(name))), None)
+    if path is None:
+        raise BadInput("no Chromium on the PATH")
+    return path
