@@ -1,0 +1,154 @@
+"""Building: same bytes, nothing drawn twice, interrupted work continued. Real pictures, real files."""
+
+import hashlib
+import io
+import json
+import os
+import shutil
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+from PIL import Image
+
+from fakesss.problem import BadInput
+from stimuli import build as building
+from stimuli.build import build, verify
+
+STUDY = """title = "x"
+[scene]
+object = "torus:4000"
+size = [48, 40]
+supersampling = 1
+[scene.occlusion]
+rays = 16
+[[factor]]
+name = "backlight"
+path = "material.backlight"
+levels = [1.2, 0.8]
+[[factor]]
+name = "exponent"
+path = "material.thickness_exponent"
+levels = [25, 18]
+"""
+
+
+@pytest.fixture
+def folder(tmp_path: Path) -> Path:
+    (tmp_path / "study").mkdir()
+    (tmp_path / "study" / "study.toml").write_text(STUDY, encoding="utf-8")
+    return tmp_path / "study"
+
+
+def content(folder: Path) -> dict[str, bytes]:
+    return {path.name: path.read_bytes() for path in sorted((folder / "stimuli").iterdir())}
+
+
+def drawn_ids(monkeypatch: pytest.MonkeyPatch) -> list[str]:
+    """The ids of the stimuli that the build really draws, in order."""
+    ids: list[str] = []
+    draw = building.draw
+
+    def noting(stimulus: Any, **kwargs: Any) -> Any:
+        ids.append(stimulus.id)
+        return draw(stimulus, **kwargs)
+
+    monkeypatch.setattr(building, "draw", noting)
+    return ids
+
+
+def test_two_builds_give_the_same_bytes(folder: Path, tmp_path: Path) -> None:
+    shutil.copytree(folder, tmp_path / "again")
+    build(folder)
+    build(tmp_path / "again", jobs=2)
+    assert content(folder) == content(tmp_path / "again")
+    assert verify(folder) == []
+
+
+def test_the_manifest_describes_the_files(folder: Path) -> None:
+    manifest = build(folder)
+    assert manifest == json.loads((folder / "stimuli" / "manifest.json").read_text())
+    assert [entry["id"] for entry in manifest["stimuli"]] == ["img01", "img02", "img03", "img04"]
+    for entry in manifest["stimuli"]:
+        picture = (folder / "stimuli" / entry["file"]).read_bytes()
+        assert hashlib.sha256(picture).hexdigest() == entry["sha256"]
+        assert Image.open(io.BytesIO(picture)).size == (entry["width"], entry["height"]) == (48, 40)
+        assert b"sRGB" in picture
+    assert manifest["stimuli"][2]["same_picture_as"] == "img01"
+    assert manifest["stimuli"][2]["sha256"] == manifest["stimuli"][0]["sha256"]
+    assert len({entry["sha256"] for entry in manifest["stimuli"]}) == 3
+    assert manifest["study"]["sha256"] == hashlib.sha256((folder / "study.toml").read_bytes()).hexdigest()
+
+
+def test_a_second_build_draws_nothing_and_a_changed_level_only_itself(
+    folder: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    build(folder)
+    drawn = drawn_ids(monkeypatch)
+    build(folder)
+    assert drawn == []
+    (folder / "study.toml").write_text(STUDY.replace("18]", "20]"), encoding="utf-8")
+    build(folder)
+    assert drawn == ["img04"]
+    build(folder, force=True)
+    assert len(drawn) == 4  # img01 and img03 are one picture
+
+
+def test_an_interrupted_build_continues(folder: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    draw = building.draw
+
+    def interrupted(stimulus: Any, **kwargs: Any) -> Any:
+        if stimulus.id == "img04":
+            raise KeyboardInterrupt
+        return draw(stimulus, **kwargs)
+
+    monkeypatch.setattr(building, "draw", interrupted)
+    with pytest.raises(KeyboardInterrupt):
+        build(folder)
+    assert not (folder / "stimuli" / "manifest.json").exists()
+    monkeypatch.setattr(building, "draw", draw)
+    drawn = drawn_ids(monkeypatch)
+    build(folder)
+    assert drawn == ["img04"]
+    assert sorted(content(folder)) == ["img01.png", "img02.png", "img03.png", "img04.png", "manifest.json"]
+
+
+def test_a_tampered_picture_is_drawn_again_and_verify_tells(folder: Path) -> None:
+    build(folder)
+    before = content(folder)
+    (folder / "stimuli" / "img02.png").write_bytes(b"not a picture")
+    assert verify(folder) == ["img02: img02.png is not the picture of the manifest; run `fakesss build`"]
+    build(folder)
+    assert content(folder) == before
+
+
+def test_a_smaller_design_leaves_no_stray_pictures(folder: Path) -> None:
+    build(folder)
+    (folder / "study.toml").write_text(STUDY.replace("1.2, 0.8", "1.2"), encoding="utf-8")
+    build(folder)
+    assert sorted(content(folder)) == ["img01.png", "img02.png", "img03.png", "manifest.json"]
+
+
+def test_pictures_made_elsewhere_keep_their_pixels(folder: Path) -> None:
+    pixels = np.random.default_rng(1).integers(0, 256, (40, 48, 3), dtype=np.uint8)
+    Image.fromarray(pixels).save(folder / "offline.png")
+    (folder / "study.toml").write_text(f'{STUDY}[[compare]]\nimage = "offline.png"\nlabel = "marble"\n')
+    entry = build(folder)["stimuli"][-1]
+    assert (entry["id"], entry["role"], entry["label"], entry["scene"]) == ("img05", "compare", "marble", None)
+    shown = np.asarray(Image.open(folder / "stimuli" / "img05.png").convert("RGB"))
+    np.testing.assert_array_equal(shown, pixels)
+
+
+def test_a_picture_of_another_size_is_refused(folder: Path) -> None:
+    Image.new("RGB", (64, 64)).save(folder / "offline.png")
+    (folder / "study.toml").write_text(f'{STUDY}[[compare]]\nimage = "offline.png"\n')
+    with pytest.raises(BadInput, match=r"offline\.png': is 64x64 but the study's pictures are 48x40; resize it"):
+        build(folder)
+
+
+def test_a_study_can_be_copied(folder: Path, tmp_path: Path) -> None:
+    build(folder)
+    shutil.copytree(folder, tmp_path / "copy")
+    os.rename(folder, tmp_path / "gone")
+    assert verify(tmp_path / "copy") == []

@@ -1,0 +1,49 @@
+"""A pass, a setting, a scene field, a recorded column or a command that the docs do not name fails here."""
+
+from pathlib import Path
+
+import pytest
+
+from analysis.plan import AnalysisPlan, Comparison, Exclusions
+from fakesss.cli import commands
+from fakesss.pipeline import build
+from fakesss.scene import Scene, scene_paths
+from fakesss.shapes import names
+from stimuli.study import Compare, Design, Factor, Study
+from study_server.export import RATING_COLUMNS
+from study_server.settings import AboutField, Question, Survey
+
+ROOT = Path(__file__).parent.parent
+
+
+def page(name: str) -> str:
+    return (ROOT / "docs" / f"{name}.md").read_text(encoding="utf-8")
+
+
+DOCUMENTED = [
+    ("scene", list(scene_paths())),
+    ("study", [*Study.model_fields, *Factor.model_fields, *Design.model_fields, *Compare.model_fields]),
+    ("survey", [*Question.model_fields, *Survey.model_fields, *AboutField.model_fields]),
+    ("survey", list(RATING_COLUMNS)),
+    ("statistics", [*AnalysisPlan.model_fields, *Comparison.model_fields, *Exclusions.model_fields]),
+    ("objects", list(names())),
+    ("technique", [node.name for node in build(Scene()).nodes]),
+]
+
+
+@pytest.mark.parametrize(("name", "things"), DOCUMENTED, ids=lambda value: value if isinstance(value, str) else "")
+def test_everything_is_documented(name: str, things: list[str]) -> None:
+    text = page(name)
+    assert [thing for thing in things if f"`{thing}`" not in text and f"[{thing}]" not in text] == []
+
+
+def test_every_command_has_an_example_and_stands_in_the_changelog() -> None:
+    changelog = (ROOT / "CHANGELOG.md").read_text(encoding="utf-8")
+    for name, command in commands.commands.items():
+        assert f"Example: fakesss {name}" in (command.help or ""), name
+        assert f"`{name}`" in changelog, name
+
+
+def test_every_page_is_in_the_contents() -> None:
+    pages = {path.stem for path in (ROOT / "docs").glob("*.md")} - {"index"}
+    assert pages == set(page("index").split(":maxdepth: 1")[1].replace("```", "").split())

@@ -1,0 +1,68 @@
+"""A whole study: from an empty folder to a report that finds what was planted. Real pictures, server and database."""
+
+import json
+import os
+import subprocess
+import sys
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+
+def fakesss(*arguments: str | Path) -> dict[str, Any]:
+    command = [sys.executable, "-m", "fakesss", *map(str, arguments), "--json"]
+    result = subprocess.run(command, capture_output=True, text=True, timeout=280, env=dict(os.environ))
+    assert result.returncode == 0, result.stderr
+    return dict(json.loads(result.stdout))
+
+
+@pytest.fixture(scope="module")
+def study(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """The thesis's study, its pictures small: what happens to them is what is tested."""
+    folder = tmp_path_factory.mktemp("studies") / "thesis"
+    fakesss("new", folder, "--template", "thesis")
+    text = (folder / "study.toml").read_text(encoding="utf-8")
+    small = text.replace('object = "figure"', 'object = "figure:4000"').replace("[512, 512]", "[96, 96]")
+    (folder / "study.toml").write_text(small, encoding="utf-8")
+    manifest = fakesss("build", folder)
+    assert len(manifest["stimuli"]) == 9
+    return folder
+
+
+@pytest.fixture(scope="module")
+def simulated(study: Path) -> dict[str, Any]:
+    return fakesss("simulate", study, "--started", "44", "--completed", "38", "--seed", "2011")
+
+
+@pytest.fixture(scope="module")
+def results(study: Path, simulated: dict[str, Any]) -> dict[str, Any]:
+    fakesss("report", study)
+    return dict(json.loads((study / "report" / "results.json").read_text(encoding="utf-8")))
+
+
+def test_no_answer_is_lost_or_doubled(simulated: dict[str, Any]) -> None:
+    assert (simulated["started"], simulated["completed"]) == (44, 38)
+    assert (simulated["lost"], simulated["duplicated"]) == (0, 0)
+    assert simulated["stored"] == simulated["acknowledged"] >= 38 * 9 * 3
+
+
+def test_the_report_counts_what_the_server_counted(results: dict[str, Any]) -> None:
+    assert (results["n_started"], results["n_completed"]) == (44, 38)
+
+
+def test_the_report_recovers_the_planted_effects(results: dict[str, Any]) -> None:
+    """The default raters: more exponent looks more translucent, more backlight less, no diffuse weight less."""
+    p = {
+        (row["question"], row["factor"]): row["p"]
+        for row in results["anova"]
+        if row["method"].startswith("repeated")
+    }
+    assert p["translucent", "thickness exponent"] < 0.001
+    assert p["translucent", "backlight"] < 0.01
+    assert p["translucent", "diffuse weight"] < 0.01
+    assert p["varnished", "diffuse weight"] > 0.01  # nothing was planted there
+
+
+def test_simulated_answers_are_said_to_be_simulated(study: Path, results: dict[str, Any]) -> None:
+    assert "simulated" in (study / "report" / "index.html").read_text(encoding="utf-8").lower()
