@@ -65,7 +65,7 @@ def cut(field: Distance, box: Box, step: float) -> tuple[Floats, Indices]:
     points = low + (corner[near][:, None] * BLOCK + cell) * step
     volume[near] = (evaluate(field, points.reshape(-1, 3)) / step).reshape(-1, BLOCK, BLOCK, BLOCK)
     grid = volume.reshape(*blocks, BLOCK, BLOCK, BLOCK).transpose(0, 3, 1, 4, 2, 5).reshape(*(blocks * BLOCK))
-    vertices, triangles, _, _ = marching_cubes(grid, 0.0, gradient_direction="ascent", allow_degenerate=False)
+    vertices, triangles, _, _ = marching_cubes(grid, 0.0, gradient_direction="descent", allow_degenerate=False)
     return low + vertices.astype(float) * step, triangles
 
 

@@ -13,7 +13,7 @@ from fakesss.problem import BadInput, nearest
 
 DEFAULT_FACES = 60_000
 FACES = (1_000, 1_000_000)  # fewest and most triangles that a built-in object is made with
-VERSION = 1  # raised whenever a built-in object changes, so that cached ones are made again
+VERSION = 2  # raised whenever a built-in object changes, so that cached ones are made again
 
 BUILT_IN: dict[str, Callable[[int], solids.Surface]] = {
     "figure": figure.figure,

@@ -37,7 +37,7 @@ def sphere(faces: int) -> Surface:
     points, triangles = [], []
     for number, side in enumerate(sides):
         triangle = corners[list(side)]
-        if np.linalg.det(triangle) > 0:
+        if np.linalg.det(triangle) < 0:
             triangle = triangle[::-1]
         points.append(normalised(weights @ triangle))
         triangles.append(patch + number * len(weights))
