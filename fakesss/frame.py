@@ -1,0 +1,141 @@
+"""Running a compiled frame graph: textures are taken and given back, every pass sees only what it declared."""
+
+import time
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from typing import Any
+
+import moderngl
+import numpy as np
+from numpy.typing import NDArray
+
+from fakesss.frame_graph import Bake, Node, Pass, Plan, TextureSpec
+from fakesss.gpu import Gpu
+from fakesss.recent import Recent
+from fakesss.shader_source import ShaderError, declared_defaults, feed
+
+FULLSCREEN = "fullscreen.vert"
+
+
+@dataclass(frozen=True)
+class Baked:
+    """A CPU-made resource: what it is, how long it took now (seconds) and whether it was at hand already."""
+
+    value: Any
+    seconds: float
+    cached: bool
+
+
+@dataclass(frozen=True)
+class Outcome:
+    """The targets of one run, bottom row first for pictures, and what each node cost."""
+
+    values: Mapping[str, Any]
+    baked: Mapping[str, Baked]
+    gpu_ms: Mapping[str, float]  # empty unless timed
+
+
+@dataclass(frozen=True)
+class Frame:
+    """What a pass may touch while it draws: its inputs by name, its cleared target, and the context's tools."""
+
+    gpu: Gpu
+    node: Pass
+    inputs: Mapping[str, Any]
+    size: tuple[int, int]
+
+    def program(self, vertex: str, fragment: str, uniforms: Mapping[str, Any], defines: Mapping[str, Any]) -> Any:
+        """The program of two files, fed: `HAS_<INPUT>` follows the wiring, textures are bound under their names."""
+        program = self.gpu.programs.get(vertex, fragment, {**self._wiring(fragment), **defines})
+        samplers = {}
+        for unit, (name, value) in enumerate(self.inputs.items()):
+            if isinstance(value, moderngl.Texture):
+                value.use(unit)
+                samplers[name] = unit
+        feed(program, {**uniforms, **samplers})
+        return program
+
+    def fill(self, fragment: str, uniforms: Mapping[str, Any], **defines: int | float) -> None:
+        """Run a fragment shader once for every pixel of the target."""
+        program = self.program(FULLSCREEN, fragment, uniforms, defines)
+        triangle = self.gpu.context.vertex_array(program, [])
+        triangle.render(moderngl.TRIANGLES, vertices=3)
+        triangle.release()
+
+    def _wiring(self, fragment: str) -> dict[str, int]:
+        asked = {name for name in declared_defaults(fragment, self.gpu.programs.root) if name.startswith("HAS_")}
+        known = {f"HAS_{name.upper()}": int(name in self.node.reads) for name in (*self.node.reads, *self.node.unread)}
+        if unknown := asked - known.keys():
+            raise ShaderError(f'{fragment}: {", ".join(sorted(unknown))} is no input of pass "{self.node.name}"')
+        return {name: known[name] for name in asked}
+
+
+@dataclass
+class Run:
+    """One execution of a plan; whatever happens, every texture goes back to the pool."""
+
+    plan: Plan
+    gpu: Gpu
+    bakes: Recent[Any]
+    timed: bool = False
+    live: dict[str, Any] = field(default_factory=dict)
+    lent: dict[str, TextureSpec] = field(default_factory=dict)
+    baked: dict[str, Baked] = field(default_factory=dict)
+    queries: dict[str, Any] = field(default_factory=dict)
+
+    def __call__(self) -> Outcome:
+        try:
+            for node in self.plan.kept:
+                self._make(node)
+                for resource in self.plan.dead_after[node.name]:
+                    self._give_back(resource)
+            values = {name: self._value(name) for name in self.plan.targets}
+            gpu_ms = {name: query.elapsed / 1e6 for name, query in self.queries.items()}
+            return Outcome(values, self.baked, gpu_ms)
+        finally:
+            for resource in tuple(self.live):
+                self._give_back(resource)
+
+    def _make(self, node: Node) -> None:
+        inputs = {name: self.live[name] for name in node.reads}
+        if isinstance(node, Bake):
+            self._bake(node, inputs)
+            return
+        for name, spec in node.writes.items():
+            self.live[name] = self.gpu.pool.take(spec)
+            self.lent[name] = spec
+        if not self.timed:
+            self._draw(node, inputs)
+            return
+        self.queries[node.name] = self.gpu.context.query(time=True)
+        with self.queries[node.name]:
+            self._draw(node, inputs)
+
+    def _bake(self, node: Bake, inputs: Mapping[str, Any]) -> None:
+        key = (node.name, node.key(inputs))
+        cached, start = key in self.bakes, time.perf_counter()
+        value = self.bakes.get(key, lambda: node.make(inputs))
+        self.baked[node.name] = Baked(value, time.perf_counter() - start, cached)
+        self.live[node.name] = value
+
+    def _draw(self, node: Pass, inputs: Mapping[str, Any]) -> None:
+        size = next(iter(node.writes.values())).size
+        textures = [self.live[name] for name in node.writes]
+        target = self.gpu.pool.framebuffer(textures, size, node.depth_test)
+        with self.gpu.context.scope(target, moderngl.DEPTH_TEST if node.depth_test else moderngl.NOTHING):
+            target.clear()
+            node.draw(Frame(self.gpu, node, inputs, size))
+
+    def _give_back(self, resource: str) -> None:
+        value = self.live.pop(resource)
+        if resource in self.lent:
+            self.gpu.pool.give_back(self.lent.pop(resource), value)
+
+    def _value(self, name: str) -> Any:
+        """A picture as (H, W) or (H, W, components) float32, bottom row first; a baked resource as it is."""
+        if name not in self.lent:
+            return self.live[name]
+        width, height = self.lent[name].size
+        flat: NDArray[np.float32] = np.frombuffer(self.live[name].read(), dtype=np.float32)
+        picture = flat.reshape(height, width, self.lent[name].components)
+        return picture[..., 0] if picture.shape[2] == 1 else picture

@@ -1,0 +1,109 @@
+"""The only place where an OpenGL context is created.
+
+Linux: off-screen through EGL, on a graphics card or on Mesa's software rasteriser, whichever the system offers first.
+macOS and Windows: moderngl's default backend, untested.
+
+A `Gpu` belongs to the thread and the process that made it: `shared()` keeps one per thread, and a process that was
+forked gets its own. Use the "spawn" start method for worker processes, since Mesa's threads do not survive a fork.
+"""
+
+import os
+import sys
+import threading
+from collections.abc import Iterator
+from contextlib import contextmanager
+from dataclasses import dataclass, field
+from typing import Any
+
+import moderngl
+
+from fakesss.problem import BadInput
+from fakesss.recent import Recent
+from fakesss.shader_source import Programs
+from fakesss.texture_pool import TexturePool
+
+REQUIRED = 330
+MEND = "install it with `apt-get install libegl1 libgl1 libgl1-mesa-dri` (Debian, Ubuntu) or the card's own driver"
+EXPLICIT_NAMES = {"libgl": "libGL.so.1", "libegl": "libEGL.so.1"}
+UPLOADS_KEPT = 16  # buffers: a few meshes in a few poses, so that a sweep uploads nothing twice
+
+
+@dataclass
+class Gpu:
+    """A context with its compiled programs, pooled textures and recently uploaded buffers."""
+
+    context: Any
+    programs: Programs = field(init=False)
+    pool: TexturePool = field(init=False)
+    uploads: Recent[Any] = field(init=False)
+
+    def __post_init__(self) -> None:
+        self.programs = Programs(self.context)
+        self.pool = TexturePool(self.context)
+        self.uploads = Recent(UPLOADS_KEPT, dispose=lambda buffer: buffer.release())
+
+    @property
+    def renderer(self) -> str:
+        """What draws, in the driver's words: equal strings promise equal bytes."""
+        return str(self.context.info["GL_RENDERER"])
+
+    @property
+    def version(self) -> str:
+        """The driver's OpenGL version string."""
+        return str(self.context.info["GL_VERSION"])
+
+
+def create() -> Gpu:
+    """A new off-screen context with OpenGL 3.3 or later, or `BadInput` naming the mend."""
+    try:
+        context = first_context()
+    except Exception as error:
+        raise BadInput(f"OpenGL: no off-screen context ({str(error).splitlines()[0]}); {MEND}") from error
+    if context.version_code < REQUIRED:
+        found = f"{context.version_code // 100}.{context.version_code % 100 // 10}"
+        context.release()
+        raise BadInput(f"OpenGL: version {found} found where 3.3 is needed; {MEND}")
+    with context.query(time=True):  # Mesa's first timer query of a context reports nonsense
+        context.finish()
+    return Gpu(context)
+
+
+def first_context() -> Any:
+    """moderngl's context; on Linux once more with the libraries' full names, for systems without `-dev` links."""
+    if not sys.platform.startswith("linux"):
+        return moderngl.create_context(standalone=True)
+    try:
+        return moderngl.create_context(standalone=True, backend="egl")
+    except Exception:
+        return moderngl.create_context(standalone=True, backend="egl", **EXPLICIT_NAMES)
+
+
+@contextmanager
+def reporting_memory(size: tuple[int, int], samples: int) -> Iterator[None]:
+    """Turn the driver's "out of memory" and its refusal of huge textures into one sentence."""
+    try:
+        yield
+    except (moderngl.Error, MemoryError) as error:
+        if not isinstance(error, MemoryError) and "create" not in str(error):
+            raise
+        raise BadInput(
+            f"OpenGL: {size[0]}x{size[1]} pixels with supersampling {samples} do not fit into memory ({error}); "
+            "lower size or supersampling"
+        ) from error
+
+
+_threads = threading.local()
+
+
+def shared() -> Gpu:
+    """This thread's context, created at the first call."""
+    if getattr(_threads, "owner", None) != os.getpid():
+        _threads.gpu, _threads.owner = create(), os.getpid()
+    gpu: Gpu = _threads.gpu
+    return gpu
+
+
+def renderer_facts() -> dict[str, str]:
+    """Who draws on this thread, for manifests: `gl_renderer` and `gl_version`. Opens the context."""
+    gpu = shared()
+    return {"gl_renderer": gpu.renderer, "gl_version": gpu.version}

@@ -1,0 +1,24 @@
+"""Ambient occlusion [a] per vertex, thesis section 3.1, eq. 3.5: the share of rays that hit nothing."""
+
+from collections.abc import Mapping
+from typing import Any
+
+from fakesss.frame_graph import Bake
+from fakesss.scene import Scene
+
+
+def occlusion(scene: Scene) -> Bake:
+    """Reads `mesh`; writes `occlusion`, (V,) float32 in 0..1."""
+    rays, sampling = scene.occlusion.rays, scene.occlusion.sampling
+
+    def make(inputs: Mapping[str, Any]) -> Any:
+        from fakesss.occlusion import bake_occlusion  # loads Embree, which a scene without ambient light never needs
+
+        return bake_occlusion(inputs["mesh"], rays, sampling)
+
+    return Bake(
+        "occlusion",
+        make,
+        key=lambda inputs: (inputs["mesh"].sha256, rays, sampling),
+        reads=("mesh",),
+    )

@@ -1,0 +1,147 @@
+"""Pictures of scenes. `render(scene)` is the short way; a `Renderer` keeps what the next picture can use again."""
+
+import threading
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from fakesss import gpu as opengl
+from fakesss.frame import Baked, Outcome, Run
+from fakesss.frame_graph import FrameGraphError, Plan
+from fakesss.image_io import check_output, write_image
+from fakesss.pipeline import build, samples_of
+from fakesss.problem import BadInput
+from fakesss.recent import Recent
+from fakesss.scene import Scene
+
+Float32 = NDArray[np.float32]
+BAKES_KEPT = 8  # the last few meshes and their occlusion
+PICTURE = "image"
+
+
+@dataclass(frozen=True)
+class Rendering:
+    """One picture and what is to be said of it."""
+
+    image: Float32  # (H, W, 4), top row first: linear RGB over the background, and coverage
+    passes: list[dict[str, Any]]  # {"name", "gpu_ms"} in the order they ran; gpu_ms is None unless timed
+    warnings: tuple[str, ...]  # one sentence each
+    non_finite: int  # pixels with a value that is not finite; always 0, counted rather than believed
+    baked: dict[str, Baked]
+
+
+class Renderer:
+    """Meshes, occlusion, programs, buffers and textures kept from picture to picture. Use it on one thread only."""
+
+    def __init__(self, gpu: opengl.Gpu | None = None) -> None:
+        self.gpu = gpu or opengl.shared()
+        self.bakes: Recent[Any] = Recent(BAKES_KEPT)
+        self.buffer_size: tuple[int, int] | None = None
+
+    def render(self, scene: Scene, timed: bool = False) -> Rendering:
+        """The picture of `scene`; `timed` adds GPU times of each pass. Raises `BadInput` for what a user can mend."""
+        plan, outcome = self._run(scene, (PICTURE, "mesh"), samples_of(scene), timed)
+        image = np.ascontiguousarray(outcome.values[PICTURE][::-1])
+        passes = [{"name": name, "gpu_ms": outcome.gpu_ms.get(name)} for name in plan.passes]
+        non_finite = int((~np.isfinite(image).all(axis=2)).sum())
+        warnings = (*outcome.values["mesh"].repairs, *picture_warnings(scene, image))
+        return Rendering(image, passes, warnings, non_finite, dict(outcome.baked))
+
+    def data(self, scene: Scene, targets: tuple[str, ...], samples: int = 1) -> dict[str, Any]:
+        """Resources by name, top row first: one sample at each pixel's centre, so data is never averaged.
+
+        Pictures are (H, W) or (H, W, components) float32, 0 outside coverage; baked resources are as they were made.
+        """
+        outcome = self._run(scene, targets, samples)[1]
+        return {name: upright(value) for name, value in outcome.values.items()}
+
+    def _run(self, scene: Scene, targets: tuple[str, ...], samples: int, timed: bool = False) -> tuple[Plan, Outcome]:
+        self._fit(scene, samples)
+        plan = build(scene, samples).compile(targets)
+        with opengl.reporting_memory(scene.size, samples):
+            return plan, Run(plan, self.gpu, self.bakes, timed)()
+
+    def _fit(self, scene: Scene, samples: int) -> None:
+        size = (scene.size[0] * samples, scene.size[1] * samples)
+        largest = int(self.gpu.context.info["GL_MAX_TEXTURE_SIZE"])
+        if max(size) > largest:
+            raise BadInput(
+                f"scene: size {scene.size[0]}x{scene.size[1]} with supersampling {samples} needs {max(size)} samples in "
+                f"a row, this OpenGL has {largest}; lower size or supersampling"
+            )
+        if size != self.buffer_size:
+            self.gpu.pool.release()
+            self.buffer_size = size
+
+
+def upright(value: Any) -> Any:
+    """A picture with its top row first; anything else as it is."""
+    return np.ascontiguousarray(value[::-1]) if isinstance(value, np.ndarray) and value.ndim > 1 else value
+
+
+def picture_warnings(scene: Scene, image: Float32) -> tuple[str, ...]:
+    """What a researcher should know of a picture before showing it."""
+    warnings = []
+    covered = image[..., 3] > 0
+    clipped = float((image[covered][:, :3] > 1).any(axis=1).mean()) if covered.any() else 0.0
+    if clipped >= 0.0005:
+        warnings.append(f"{clipped:.1%} of the object's pixels are brighter than the display's white and clip.")
+    if not covered.any():
+        warnings.append("No pixel shows the object; check camera.distance, camera.near and camera.far.")
+    return tuple(warnings)
+
+
+_threads = threading.local()
+
+
+def shared_renderer() -> Renderer:
+    """This thread's renderer, created at the first call."""
+    gpu = opengl.shared()
+    if getattr(_threads, "renderer", None) is None or _threads.renderer.gpu is not gpu:
+        _threads.renderer = Renderer(gpu)
+    renderer: Renderer = _threads.renderer
+    return renderer
+
+
+def render(scene: Scene, target: str = PICTURE) -> Any:
+    """A picture of `scene`, or any resource of `explain` by name.
+
+    `image`: (H, W, 4) float32, linear RGB composited over `scene.background`, so that showing RGB is the picture;
+    the fourth channel is coverage. Other targets: see `Renderer.data`. `thickness`: (H, W) float32 in sphere
+    diameters, 0 outside coverage, never NaN. Raises `BadInput` for an unknown name or anything a user can mend.
+    """
+    if target == PICTURE:
+        return shared_renderer().render(scene).image
+    try:
+        return shared_renderer().data(scene, (target,))[target]
+    except FrameGraphError as error:
+        raise BadInput(f"render: {error}") from None
+
+
+def render_file(scene: Scene, out: str | Path, views: bool = False) -> dict[str, Any]:
+    """Write the picture of `scene` (or with `views` the contact sheet of its intermediates) to a .png or .exr file.
+
+    Returns the contract's `render` document.
+    """
+    path = check_output(out)
+    drawn = shared_renderer().render(scene, timed=True)
+    picture = drawn.image
+    if views:
+        from fakesss.inspect import contact_sheet
+
+        picture = contact_sheet(scene)
+    write_image(path, picture)
+    height, width = picture.shape[:2]
+    return {
+        "image": str(path),
+        "width": width,
+        "height": height,
+        "gl_renderer": shared_renderer().gpu.renderer,
+        "passes": drawn.passes,
+        "non_finite": drawn.non_finite,
+        "warnings": list(drawn.warnings),
+        "scene_sha256": scene.sha256(),
+    }

@@ -1,0 +1,113 @@
+"""GLSL assembled from files: `#include "x.glsl"` once each, defaults overridden by name.
+
+A default stands in the GLSL as `#define NAME value // why`; a define without a comment is the file's own business and
+cannot be overridden. moderngl's `Context.includes` is one level deep, and Mesa reports no file in its messages, so
+sources are flattened here and compiler messages are mapped back to file and line.
+"""
+
+import re
+from collections.abc import Mapping
+from dataclasses import dataclass
+from pathlib import Path
+from types import MappingProxyType
+
+GLSL = Path(__file__).parent / "glsl"
+VERSION = "#version 330 core"
+INCLUDE = re.compile(r'^\s*#\s*include\s+"([^"]+)"\s*(//.*)?$')
+DEFAULT = re.compile(r"^\s*#\s*define\s+([A-Z][A-Z0-9_]*)\s+(\S+)\s*//\s*\S")
+NOTHING: Mapping[str, int | float] = MappingProxyType({})
+
+
+class ShaderError(ValueError):
+    """A shader could not be assembled, compiled or fed; the message names file and line, or the name at fault."""
+
+
+@dataclass(frozen=True)
+class ShaderSource:
+    """One flattened translation unit and, per line, where that line came from."""
+
+    text: str
+    origin: tuple[tuple[str, int], ...]  # origin[i] is the (file, line) of text line i + 1
+
+    def locate(self, message: str) -> str:
+        """A driver's message with its `0:12(3)` (Mesa, Apple) or `0(12)` (NVIDIA) replaced by `file:line`."""
+
+        def place(match: re.Match[str]) -> str:
+            file, line = self.origin[min(int(match[1]), len(self.origin)) - 1]
+            return f"{file}:{line}"
+
+        return re.sub(r"\b0[:(](\d+)(?:\(\d+\)|\))?", place, message)
+
+
+def assemble(name: str, defines: Mapping[str, int | float] = NOTHING, root: Path = GLSL) -> ShaderSource:
+    """Flatten the file `name` and its includes, each default named in `defines` replaced; raises `ShaderError`."""
+    lines: list[tuple[str, str, int]] = []
+    replaced: set[str] = set()
+    seen: set[str] = set()
+
+    def append(file: str, included_from: str) -> None:
+        if file in seen:
+            return
+        seen.add(file)
+        if not (root / file).is_file():
+            raise ShaderError(f'{included_from}: no shader file "{file}" under {root}')
+        for number, line in enumerate((root / file).read_text(encoding="utf-8").splitlines(), 1):
+            if include := INCLUDE.match(line):
+                append(include[1], f"{file}:{number}")
+                continue
+            if (default := DEFAULT.match(line)) and default[1] in defines:
+                replaced.add(default[1])
+                line = f"#define {default[1]} {defines[default[1]]!r}"
+            lines.append((line, file, number))
+
+    append(name, name)
+    if unknown := set(defines) - replaced:
+        raise ShaderError(f"{name}: no file of it declares a default for {', '.join(sorted(unknown))}")
+    text = "\n".join([VERSION, *(line for line, _, _ in lines)]) + "\n"
+    return ShaderSource(text, (("version", 1), *((file, number) for _, file, number in lines)))
+
+
+def declared_defaults(name: str, root: Path = GLSL) -> frozenset[str]:
+    """The names that `assemble(name, ...)` lets a caller replace."""
+    return frozenset(match[1] for line in assemble(name, root=root).text.splitlines() if (match := DEFAULT.match(line)))
+
+
+class Programs:
+    """Compiled programs of one context, one per (vertex file, fragment file, defines)."""
+
+    def __init__(self, context: object, root: Path = GLSL) -> None:
+        self.context, self.root = context, root
+        self.compiled: dict[tuple[str, str, frozenset[tuple[str, int | float]]], object] = {}
+
+    def get(self, vertex: str, fragment: str, defines: Mapping[str, int | float] = NOTHING) -> object:
+        """The program of two files; `defines` go to the fragment shader. `ShaderError` names file and line."""
+        key = (vertex, fragment, frozenset(defines.items()))
+        if key not in self.compiled:
+            self.compiled[key] = self._compile(vertex, fragment, defines)
+        return self.compiled[key]
+
+    def _compile(self, vertex: str, fragment: str, defines: Mapping[str, int | float]) -> object:
+        sources = {"vertex": assemble(vertex, NOTHING, self.root), "fragment": assemble(fragment, defines, self.root)}
+        try:
+            return self.context.program(  # type: ignore[attr-defined]
+                vertex_shader=sources["vertex"].text, fragment_shader=sources["fragment"].text
+            )
+        except Exception as error:
+            stage = "vertex" if "vertex_shader" in str(error) else "fragment"
+            raise ShaderError(f"{vertex} + {fragment}: {sources[stage].locate(str(error))}") from error
+
+
+def feed(program: object, uniforms: Mapping[str, object]) -> None:
+    """Set every uniform of a program; one too many or one too few is a `ShaderError`, never silence."""
+    active = {name for name in program if not name.startswith("gl_") and is_uniform(program[name])}  # type: ignore
+    if unused := uniforms.keys() - active:
+        raise ShaderError(f"uniform {', '.join(sorted(unused))} is set but not used by the shader")
+    if missing := active - uniforms.keys():
+        raise ShaderError(f"uniform {', '.join(sorted(missing))} is used by the shader but not set")
+    for name, value in uniforms.items():
+        program[name] = value  # type: ignore[index]
+
+
+def is_uniform(member: object) -> bool:
+    """Programs list attributes too; only uniforms have an array length and a location but no shape."""
+    return type(member).__name__ == "Uniform"
