@@ -1,0 +1,42 @@
+"""Who may see /admin: one secret, compared in constant time, guesses slowed down, remembered in a signed cookie."""
+
+import hmac
+import time
+
+from fastapi import Request
+
+from study_server.site import Site
+
+COOKIE = "fakesss_admin"
+COOKIE_S = 12 * 3600
+
+
+def is_secret(site: Site, given: str) -> bool:
+    """Whether `given` is the admin secret, in a time that tells nothing about how much of it is right."""
+    return hmac.compare_digest(given.encode(), site.admin_secret.encode())
+
+
+def cookie_value(site: Site, now: float) -> str:
+    """Until when the bearer may come in, signed."""
+    until = str(int(now) + COOKIE_S)
+    return f"{until}.{signature(site, until)}"
+
+
+def signature(site: Site, until: str) -> str:
+    """Depends on the secret too, so that a new secret closes the door to old cookies."""
+    key = f"{site.signing_key}\0{site.admin_secret}".encode()
+    return hmac.new(key, f"admin until {until}".encode(), "sha256").hexdigest()
+
+
+def is_admin(request: Request, site: Site) -> bool:
+    """Whether this request carries a valid cookie, or the secret as a bearer token."""
+    until, _, signed = request.cookies.get(COOKIE, "").partition(".")
+    if signed and hmac.compare_digest(signed.encode(), signature(site, until).encode()):
+        return time.time() < int(until)
+    scheme, _, given = request.headers.get("authorization", "").partition(" ")
+    if scheme.lower() != "bearer" or site.throttle.is_closed():
+        return False
+    if is_secret(site, given.strip()):
+        return True
+    site.throttle.note()
+    return False

@@ -1,0 +1,129 @@
+"""What the browser sends for one picture, and how it gets to disk: once, whatever happens on the way."""
+
+from collections.abc import Mapping
+from typing import Annotated, Any
+
+from pydantic import Field
+from sqlalchemy import Connection, RowMapping, insert, select, update
+
+from fakesss.problem import Strict
+from study_server import schema
+from study_server.manifest import BuiltStudy
+from study_server.sessions import record, unanswered
+
+DAY_MS = 86_400_000.0
+Milliseconds = Annotated[float, Field(ge=0, le=30 * DAY_MS)]
+Pixels = Annotated[float, Field(ge=0, le=1e6)]
+Sha256 = Annotated[str, Field(pattern="^[0-9a-f]{64}$")]
+
+presentations = schema.presentations.c
+
+
+class Display(Strict):
+    """How the picture stood on the screen."""
+
+    device_pixel_ratio: Annotated[float, Field(gt=0, le=100)] = Field(description="device pixels per CSS pixel")
+    zoom: Annotated[float, Field(gt=0, le=100)] = Field(description="estimated page zoom, 1 = 100%")
+    drawn_width_px: Pixels = Field(description="the picture's width in device pixels")
+    window_width_px: Pixels = Field(description="CSS pixels")
+    window_height_px: Pixels = Field(description="CSS pixels")
+    focus_lost_ms: Milliseconds = Field(description="how long the page was hidden or not in front")
+
+
+class Answer(Strict):
+    """One question's answer."""
+
+    question: Annotated[str, Field(max_length=60)]
+    rating: Annotated[int, Field(strict=True)]
+    rt_ms: Milliseconds = Field(description="from the picture's first frame to the last choice")
+
+
+class Posted(Strict):
+    """One picture's answers. Times are differences, because a participant's clock may be hours off."""
+
+    place: Annotated[int, Field(ge=0, le=100_000)]
+    submission: Annotated[str, Field(min_length=8, max_length=64)] = Field(description="the same on every retry")
+    stimulus_sha256: Sha256 = Field(description="computed in the browser from the bytes it drew")
+    since_shown_ms: Milliseconds = Field(description="from the picture's first frame to this attempt to send")
+    answers: Annotated[tuple[Answer, ...], Field(max_length=100)]
+    display: Display
+
+
+class Refused(Exception):
+    """Answers that cannot be stored: HTTP status and one sentence for the participant."""
+
+    def __init__(self, http_status: int, sentence: str) -> None:
+        super().__init__(sentence)
+        self.http_status = http_status
+
+
+def accepted(connection: Connection, study: BuiltStudy, session: RowMapping, sent: Posted) -> RowMapping:
+    """The presentation that `sent` answers: the one that is due, or one answered before.
+
+    Raises `Refused` unless it was assigned, the picture drawn is the one assigned, and every question has an answer.
+    """
+    at = select(schema.presentations).filter_by(session=session["id"], place=sent.place)
+    planned = connection.execute(at).mappings().one_or_none()
+    if session["step"] == "withdrawn":
+        raise Refused(410, "You have withdrawn from this study; nothing is stored any more.")
+    if planned is None:
+        raise Refused(404, "There is no such picture in this session.")
+    if planned["answered_at"] is None and not is_due(connection, session, planned):
+        raise Refused(409, "Another picture comes first.")
+    if planned["stimulus_sha256"] != sent.stimulus_sha256:
+        raise Refused(409, "The picture that was shown is not the one that belongs here; the answer was not stored.")
+    scales = {question.name: question.scale for question in study.settings.question}
+    if sorted(answer.question for answer in sent.answers) != sorted(scales):
+        raise Refused(422, "Every question needs exactly one answer.")
+    for answer in sent.answers:
+        if not 1 <= answer.rating <= scales[answer.question]:
+            raise Refused(422, f"An answer must be between 1 and {scales[answer.question]}.")
+    return planned
+
+
+def is_due(connection: Connection, session: RowMapping, planned: RowMapping) -> bool:
+    """Whether this presentation is the one the participant is at."""
+    step = "practice" if planned["practice"] else "trials"
+    return session["step"] == step and unanswered(connection, session["id"], limit=1)[0]["place"] == planned["place"]
+
+
+def store(connection: Connection, planned: RowMapping, sent: Posted, now: float) -> list[dict[str, Any]]:
+    """Bring the answers to disk and return them as they now stand, one for each question.
+
+    The first answer to a question is a row of `ratings`. The same one again changes nothing; another one is added to
+    `revisions`. A retry is known by its `submission`, so a late one cannot undo a revision.
+    """
+    shown_at = now - sent.since_shown_ms / 1000
+    stored = []
+    for answer in sent.answers:
+        key = {"session": planned["session"], "place": planned["place"], "question": answer.question}
+        row = key | {
+            "rating": answer.rating,
+            "rt_ms": answer.rt_ms,
+            "shown_at": shown_at,
+            "answered_at": shown_at + answer.rt_ms / 1000,
+            "stored_at": now,
+            "submission": sent.submission,
+        }
+        history = history_of(connection, key)
+        if not history:
+            connection.execute(insert(schema.ratings).values(row))
+        elif sent.submission not in {old["submission"] for old in history} and history[-1]["rating"] != answer.rating:
+            connection.execute(insert(schema.revisions).values(row | {"revision": len(history)}))
+            detail = {"trial": planned["trial"], "practice": planned["practice"], "question": answer.question}
+            change = {"from": history[-1]["rating"], "to": answer.rating, "revision": len(history)}
+            record(connection, planned["session"], now, "revised", detail | change)
+        stands = history_of(connection, key)
+        stored.append({"question": answer.question, "rating": stands[-1]["rating"], "revision": len(stands) - 1})
+    if planned["answered_at"] is None:
+        mine = (presentations.session == planned["session"], presentations.place == planned["place"])
+        facts = {"answered_at": now, "shown_at": shown_at, **sent.display.model_dump()}
+        connection.execute(update(schema.presentations).where(*mine).values(facts))
+    return stored
+
+
+def history_of(connection: Connection, key: Mapping[str, Any]) -> list[RowMapping]:
+    """The first answer and its revisions, oldest first."""
+    first = select(schema.ratings).filter_by(**key)
+    later = select(schema.revisions).filter_by(**key).order_by(schema.revisions.c.revision)
+    return [*connection.execute(first).mappings(), *connection.execute(later).mappings()]

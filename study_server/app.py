@@ -1,0 +1,100 @@
+"""The web application of one study."""
+
+import logging
+import os
+from collections.abc import Callable
+from pathlib import Path
+
+from fastapi import FastAPI, Request, Response
+from fastapi.exceptions import RequestValidationError
+from fastapi.responses import JSONResponse
+from fastapi.staticfiles import StaticFiles
+from sqlalchemy.exc import DatabaseError
+from starlette.exceptions import HTTPException
+
+from study_server import admin, participant, pictures
+from study_server.database import adopt_study, default_url, is_writable, open_database, secret, shown_url
+from study_server.manifest import load_study
+from study_server.site import HERE, AtSite, Mode, Reporter, Site, sorry
+from study_server.web_safety import WebSafety
+
+log = logging.getLogger(__name__)
+
+SECRET_VARIABLE = "FAKESSS_ADMIN_SECRET"
+
+
+def create_app(
+    study_folder: Path,
+    *,
+    database_url: str | None = None,
+    mode: Mode = "live",
+    make_report: Callable[[], Path] | None = None,
+) -> FastAPI:
+    """The application that serves the built study in `study_folder`; `app.state.site` is its `Site`.
+
+    `database_url` defaults to ratings.sqlite in the folder. `make_report` writes the report and returns its folder.
+    Raises `BadInput` if the study is not built, a picture is not as built, or the database cannot be used.
+    """
+    site = open_site(Path(study_folder), database_url, mode, make_report)
+    app = FastAPI(title=site.study.title, docs_url=None, redoc_url=None)
+    app.state.site = site
+    app.add_middleware(WebSafety)
+    app.mount("/static", StaticFiles(directory=HERE / "static"))
+    app.get("/health")(health)
+    for router in (pictures.router, admin.router, participant.router):
+        app.include_router(router)
+    app.add_exception_handler(DatabaseError, not_saved)
+    app.add_exception_handler(RequestValidationError, not_understood)
+    app.add_exception_handler(HTTPException, no_page)
+    app.add_exception_handler(admin.Locked, admin.ask_secret)
+    return app
+
+
+def open_site(folder: Path, url: str | None, mode: Mode, make_report: Callable[[], Path] | None) -> Site:
+    """Study and database, opened and matched."""
+    study = load_study(folder)
+    url = url or default_url(folder)
+    database = open_database(url)
+    adopt_study(database, study, shown_url(url))
+    return Site(
+        study=study,
+        database=database,
+        mode=mode,
+        signing_key=f"{secret(database, 'signing_key')} {mode} {study.identity}",
+        salt=secret(database, "salt"),
+        admin_secret=os.environ.get(SECRET_VARIABLE) or secret(database, "admin_secret"),
+        reporter=Reporter(make_report) if make_report else None,
+    )
+
+
+def admin_secret(study_folder: Path, database_url: str | None = None) -> str:
+    """The secret that opens /admin of this study: from FAKESSS_ADMIN_SECRET, or kept in its database."""
+    given = os.environ.get(SECRET_VARIABLE)
+    return given or secret(open_database(database_url or default_url(Path(study_folder))), "admin_secret")
+
+
+def health(site: AtSite) -> Response:
+    """200 if a rating could be brought to disk now, else 503."""
+    if is_writable(site.database):
+        return JSONResponse({"status": "ok", "study": site.study.title, "mode": site.mode})
+    return JSONResponse({"status": "the database cannot be written"}, 503)
+
+
+def not_saved(request: Request, error: Exception) -> Response:
+    """The database failed: nothing was stored, and the browser is to try again."""
+    log.error("the database failed: %s", getattr(error, "orig", error))
+    return sorry(request, 503, "This could not be saved just now; please try again in a moment.")
+
+
+def not_understood(request: Request, error: Exception) -> Response:
+    """A body or an address that is not of the expected form."""
+    assert isinstance(error, RequestValidationError)
+    first = error.errors()[0]
+    where = ".".join(str(part) for part in first["loc"])
+    return sorry(request, 422, f"{where}: {first['msg']}.")
+
+
+def no_page(request: Request, error: Exception) -> Response:
+    """No such address, or not with this method."""
+    assert isinstance(error, HTTPException)
+    return sorry(request, error.status_code, "There is no such page." if error.status_code == 404 else error.detail)

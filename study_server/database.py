@@ -1,0 +1,172 @@
+"""One database per study: opened, checked, and written to in whole transactions that are on disk when they return."""
+
+import json
+import secrets
+import threading
+import time
+from collections.abc import Iterator
+from contextlib import contextmanager
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Any
+
+from sqlalchemy import Connection, Engine, create_engine, event, func, insert, select, update
+from sqlalchemy.engine import make_url
+from sqlalchemy.exc import ArgumentError, DatabaseError, NoSuchModuleError, OperationalError
+
+from fakesss.problem import BadInput
+from study_server import schema
+from study_server.assignment import order_rows
+from study_server.manifest import BuiltStudy
+
+BUSY_TIMEOUT_S = 30.0
+"""How long a writer of another process is waited for."""
+
+
+@dataclass(frozen=True)
+class Database:
+    """The engine and this process's writer lock.
+
+    SQLite lets one connection write. Waiting at a lock is fair and wakes at once; SQLite's own busy handler sleeps
+    and may pass over a waiter for long.
+    """
+
+    engine: Engine
+    writer: threading.Lock = field(default_factory=threading.Lock)
+
+    @contextmanager
+    def reading(self) -> Iterator[Connection]:
+        """A connection that sees one snapshot."""
+        with self.engine.connect() as connection:
+            yield connection
+
+    @contextmanager
+    def writing(self) -> Iterator[Connection]:
+        """A transaction that holds the write lock from its first statement; on disk when the block is left."""
+        writable = self.engine.execution_options(sqlite_begin="IMMEDIATE")
+        with self.writer, writable.begin() as connection:
+            yield connection
+
+
+def default_url(folder: Path) -> str:
+    """Where the ratings of the study in `folder` are kept unless told otherwise."""
+    return f"sqlite:///{folder / 'ratings.sqlite'}"
+
+
+def open_database(url: str) -> Database:
+    """The database at `url` with all tables in place.
+
+    Raises `BadInput` if it cannot be opened or written, or belongs to another version of this program.
+    """
+    shown = shown_url(url)
+    try:
+        database = Database(connect(url))
+        with database.writing() as connection:
+            schema.tables.create_all(connection)
+            version = remembered(connection, "schema_version", lambda: schema.VERSION)
+    except (OperationalError, DatabaseError) as error:
+        raise BadInput(f"{shown}: cannot be opened for writing ({error.orig}); check the path and its rights") from None
+    except (ArgumentError, NoSuchModuleError, ImportError) as error:
+        raise BadInput(f"{shown}: is no database address ({error}); write sqlite:///FILE") from None
+    if version != schema.VERSION:
+        raise BadInput(f"{shown}: has schema {version}, this program knows {schema.VERSION}; use the one it is from")
+    return database
+
+
+def shown_url(url: str) -> str:
+    """`url` fit to be printed: without its password."""
+    try:
+        return make_url(url).render_as_string(hide_password=True)
+    except ArgumentError:
+        return f'"{url}"'
+
+
+def connect(url: str) -> Engine:
+    """An engine whose transactions begin when and how we say."""
+    engine = create_engine(url)
+    if engine.dialect.name == "sqlite":
+        engine = create_engine(url, connect_args={"timeout": BUSY_TIMEOUT_S}, pool_size=20, max_overflow=40)
+        event.listen(engine, "connect", prepare_sqlite)
+        event.listen(engine, "begin", begin_sqlite)
+    return engine
+
+
+def prepare_sqlite(connection: Any, _record: Any) -> None:
+    """Pragmas of every new SQLite connection.
+
+    synchronous=FULL makes a commit wait for the disk: without it a rating could be acknowledged and lost.
+    """
+    connection.isolation_level = None  # the driver must not begin transactions by itself
+    for pragma in ("journal_mode=WAL", "synchronous=FULL", "foreign_keys=ON"):
+        connection.execute(f"PRAGMA {pragma}")
+
+
+def begin_sqlite(connection: Connection) -> None:
+    """BEGIN, or BEGIN IMMEDIATE for writers, which then cannot fail half-way for want of the lock."""
+    connection.exec_driver_sql(f"BEGIN {connection.get_execution_options().get('sqlite_begin', '')}")
+
+
+def remembered(connection: Connection, key: str, make: Any) -> str:
+    """The value of `key` in `meta`; made and stored on first use."""
+    value = connection.scalar(select(schema.meta.c.value).where(schema.meta.c.key == key))
+    if value is None:
+        value = str(make())
+        connection.execute(insert(schema.meta).values(key=key, value=value))
+    return str(value)
+
+
+def secret(database: Database, name: str) -> str:
+    """A random secret kept in the database under `name`: 192 bits, made on first use."""
+    with database.writing() as connection:
+        return remembered(connection, name, lambda: secrets.token_urlsafe(24))
+
+
+def is_writable(database: Database) -> bool:
+    """Whether a row can be brought to disk right now."""
+    try:
+        with database.writing() as connection:
+            remembered(connection, "health", time.time)
+            connection.execute(update(schema.meta).where(schema.meta.c.key == "health").values(value=str(time.time())))
+    except DatabaseError:
+        return False
+    return True
+
+
+def adopt_study(database: Database, study: BuiltStudy, shown: str) -> None:
+    """Note the study and its order rows on first use.
+
+    Raises `BadInput` if live ratings of a study with other words or other pictures are in the same database: answers
+    to two different studies must not be mixed. Pilot sessions of an earlier version stay, apart, and are not resumed.
+    """
+    with database.writing() as connection:
+        others = connection.scalar(
+            select(func.count())
+            .select_from(schema.sessions)
+            .where(schema.sessions.c.mode == "live", schema.sessions.c.study != study.identity)
+        )
+        if others:
+            raise BadInput(
+                f"{shown}: holds {others} live session(s) of another version of this study; "
+                "move that file aside, or restore study.toml and its pictures as they were"
+            )
+        this = schema.studies.c.identity == study.identity
+        if not connection.execute(update(schema.studies).where(this).values(opened_at=time.time())).rowcount:
+            insert_study(connection, study)
+
+
+def insert_study(connection: Connection, study: BuiltStudy) -> None:
+    """The study's words and its order rows, as they will be for all who take part."""
+    connection.execute(
+        insert(schema.studies).values(
+            identity=study.identity,
+            sha256=study.sha256,
+            title=study.title,
+            settings=json.loads(study.settings.model_dump_json()),
+            opened_at=time.time(),
+        )
+    )
+    rows = order_rows([stimulus.id for stimulus in study.stimuli], study.settings.survey.order, study.seed)
+    connection.execute(
+        insert(schema.order_rows),
+        [{"study": study.identity, "row": number, "stimuli": row} for number, row in enumerate(rows)],
+    )

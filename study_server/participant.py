@@ -1,0 +1,127 @@
+"""The participant's way: link, consent, about you, instructions, practice, trials, comments, thank-you.
+
+A participant has one address, and the server holds where they are in it: refresh, back, a second tab or another
+browser show the same step. A form that arrives for a step already left changes nothing.
+"""
+
+import time
+
+from fastapi import APIRouter, Request, Response
+from fastapi.responses import JSONResponse, RedirectResponse
+from sqlalchemy import Connection, RowMapping
+
+from study_server import answers, pages, sessions, steps
+from study_server.site import AtSite, Fields, Site, answer, sorry
+from study_server.tokens import External, belongs_to, is_valid, make_token
+
+router = APIRouter()
+
+STRANGER = "This address does not belong to a participant of this study; please open the link you were given again."
+
+
+@router.get("/")
+def link(request: Request, site: AtSite) -> Response:
+    """The link that is sent out: gives the visitor an address of their own. Stores nothing."""
+    external = External.from_query(request.query_params)
+    token = make_token(site.signing_key, external)
+    query = f"?{request.url.query}" if external else ""
+    return RedirectResponse(f"/s/{token}{query}", 303)
+
+
+@router.get("/s/{token}")
+def here(request: Request, site: AtSite, token: str) -> Response:
+    """Where this participant is."""
+    if not is_valid(site.signing_key, token):
+        return sorry(request, 404, STRANGER)
+    with site.database.reading() as connection:
+        session = sessions.find(connection, token)
+        if session is None:
+            external = External.from_query(request.query_params)
+            data = pages.consent_page(site.study, site.mode, token, external)
+        elif session["study"] != site.study.identity:
+            return sorry(request, 410, "This study has changed since you began; please open the link again.")
+        else:
+            data = pages.page(connection, site.study, session)
+    return answer(request, f"{data['step']}.html", data)
+
+
+@router.post("/s/{token}/consent")
+def consent(request: Request, site: AtSite, token: str, fields: Fields) -> Response:
+    """Starts the session, once, however often it is sent."""
+    external = External.from_query(fields)
+    if not is_valid(site.signing_key, token) or (external and not belongs_to(site.signing_key, token, external)):
+        return sorry(request, 404, STRANGER)
+    with site.database.writing() as connection:
+        sessions.start(connection, site.study, site.mode, token, external, time.time())
+    return RedirectResponse(f"/s/{token}", 303)
+
+
+@router.post("/s/{token}/ratings")
+def ratings(request: Request, site: AtSite, token: str, sent: answers.Posted) -> Response:
+    """Stores one picture's answers; replies when they are on disk, with the page that comes next."""
+    now = time.time()
+    try:
+        with site.database.writing() as connection:
+            session = known(site, connection, token)
+            planned = answers.accepted(connection, site.study, session, sent)
+            saved = answers.store(connection, planned, sent, now)
+            steps.after_answers(connection, site.study, session, now)
+            following = pages.page(connection, site.study, known(site, connection, token))
+    except answers.Refused as refused:
+        note_refusal(site, token, sent, refused, now)
+        return JSONResponse({"error": str(refused)}, refused.http_status)
+    return JSONResponse({"saved": saved, "next": following})
+
+
+@router.get("/s/{token}/withdraw")
+def ask_withdraw(request: Request, site: AtSite, token: str) -> Response:
+    """Explains what withdrawing means."""
+    with site.database.reading() as connection:
+        session = sessions.find(connection, token)
+    if session is None:
+        return sorry(request, 404, STRANGER)
+    return answer(request, "withdraw.html", pages.frame(site.study, site.mode, token, "withdraw"))
+
+
+@router.post("/s/{token}/withdraw")
+def withdraw(request: Request, site: AtSite, token: str, fields: Fields) -> Response:
+    """Deletes what this participant said; asked for twice, because it cannot be undone."""
+    with site.database.writing() as connection:
+        session = sessions.find(connection, token)
+        if session is None:
+            return sorry(request, 404, STRANGER)
+        if fields.get("sure") == "yes" and session["step"] != "withdrawn":
+            sessions.withdraw(connection, session, time.time())
+    return RedirectResponse(f"/s/{token}", 303)
+
+
+@router.post("/s/{token}/{step}")
+def leave_step(request: Request, site: AtSite, token: str, step: str, fields: Fields) -> Response:
+    """Leaves a step that asks nothing or asks by a form; a step that is not the current one stays as it is."""
+    now = time.time()
+    with site.database.writing() as connection:
+        session = sessions.find(connection, token)
+        if session is None or step not in steps.LEAVE:
+            return sorry(request, 404, STRANGER)
+        if session["step"] == step and session["study"] == site.study.identity:
+            steps.LEAVE[step](connection, site.study, session, fields, now)
+    return RedirectResponse(f"/s/{token}", 303)
+
+
+def known(site: Site, connection: Connection, token: str) -> RowMapping:
+    """The started session under `token`, or `Refused`."""
+    session = sessions.find(connection, token)
+    if session is None:
+        raise answers.Refused(404, STRANGER)
+    if session["study"] != site.study.identity:
+        raise answers.Refused(410, "This study has changed since you began; please open the link again.")
+    return session
+
+
+def note_refusal(site: Site, token: str, sent: answers.Posted, refused: answers.Refused, now: float) -> None:
+    """A refused answer leaves an event, so that the researcher sees that something was wrong with it."""
+    with site.database.writing() as connection:
+        session = sessions.find(connection, token)
+        if session is not None and session["step"] != "withdrawn":
+            detail = {"place": sent.place, "stimulus_sha256": sent.stimulus_sha256, "because": str(refused)}
+            sessions.record(connection, session["id"], now, "refused", detail)

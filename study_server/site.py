@@ -1,0 +1,91 @@
+"""What every endpoint needs at hand, and how it answers: the same dict as a page or as JSON."""
+
+import threading
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Annotated, Any, Literal
+
+from fastapi import Depends, Request, Response
+from fastapi.responses import JSONResponse
+from fastapi.templating import Jinja2Templates
+
+from study_server.database import Database
+from study_server.manifest import BuiltStudy
+from study_server.throttle import Throttle
+
+Mode = Literal["live", "pilot"]
+
+HERE = Path(__file__).parent
+templates = Jinja2Templates(HERE / "templates", autoescape=True, trim_blocks=True, lstrip_blocks=True)
+
+
+@dataclass
+class Reporter:
+    """Writes the report, one at a time, and remembers where."""
+
+    make: Callable[[], Path]
+    lock: threading.Lock = field(default_factory=threading.Lock)
+    written: Path | None = None
+
+    def folder(self, *, anew: bool) -> Path:
+        """The report's folder; the report is written first if it should be new or there is none."""
+        with self.lock:
+            if anew or self.written is None:
+                self.written = Path(self.make())
+            return self.written
+
+
+@dataclass(frozen=True)
+class Site:
+    """One served study."""
+
+    study: BuiltStudy
+    database: Database
+    mode: Mode
+    signing_key: str
+    salt: str
+    admin_secret: str
+    reporter: Reporter | None = None
+    throttle: Throttle = field(default_factory=Throttle)
+
+
+def site_of(request: Request) -> Site:
+    """The site that this request came to."""
+    site: Site = request.app.state.site
+    return site
+
+
+AtSite = Annotated[Site, Depends(site_of)]
+
+
+async def posted_fields(request: Request) -> dict[str, str]:
+    """A form's fields, posted by a browser's form or as a JSON object of strings."""
+    if request.headers.get("content-type", "").startswith("application/json"):
+        try:
+            data = await request.json()
+        except ValueError:
+            return {}
+        return {str(key): str(value) for key, value in data.items()} if isinstance(data, dict) else {}
+    return {key: value for key, value in (await request.form()).items() if isinstance(value, str)}
+
+
+Fields = Annotated[dict[str, str], Depends(posted_fields)]
+
+
+def wants_json(request: Request) -> bool:
+    """Whether the caller is a program."""
+    return "application/json" in request.headers.get("accept", "")
+
+
+def answer(request: Request, template: str, data: Mapping[str, Any], http_status: int = 200) -> Response:
+    """`data` as a page, or as JSON if that is what was asked for."""
+    if wants_json(request):
+        return JSONResponse(dict(data), http_status)
+    return templates.TemplateResponse(request, template, dict(data), http_status)
+
+
+def sorry(request: Request, http_status: int, sentence: str) -> Response:
+    """An error in one sentence."""
+    title = "Not found" if http_status == 404 else "Sorry"
+    return answer(request, "sorry.html", {"step": "error", "title": title, "error": sentence}, http_status)

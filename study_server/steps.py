@@ -1,0 +1,75 @@
+"""What moves a session from one step to the next."""
+
+import secrets
+from collections.abc import Callable, Mapping
+
+from sqlalchemy import Connection, RowMapping
+
+from study_server.manifest import BuiltStudy
+from study_server.sessions import advance, expected_and_stored, record, unanswered
+
+CODE_LETTERS = "ABCDEFGHJKLMNPQRSTUVWXYZ23456789"
+"""Without I, O, 0 and 1, which are mistaken for one another when copied by hand."""
+
+CODE_LENGTH = 8
+LONGEST_TEXT = 10_000
+
+Session = RowMapping
+Values = Mapping[str, str]
+
+
+def leave_about(connection: Connection, study: BuiltStudy, session: Session, values: Values, now: float) -> None:
+    """Keeps the answers about the participant; stays if a required one is missing or is none of the choices."""
+    told = {}
+    for field in study.settings.survey.about:
+        value = values.get(field.name, "").strip()[:LONGEST_TEXT]
+        if (field.required and not value) or (value and field.choices and value not in field.choices):
+            return
+        told[field.name] = value
+    advance(connection, session, now, step="instructions", about=told)
+
+
+def leave_instructions(connection: Connection, study: BuiltStudy, session: Session, _: Values, now: float) -> None:
+    """On to practice, if there is any."""
+    advance(connection, session, now, step="practice" if study.settings.survey.practice else "trials")
+
+
+def leave_ready(connection: Connection, _study: BuiltStudy, session: Session, _: Values, now: float) -> None:
+    """From practice to the trials."""
+    advance(connection, session, now, step="trials")
+
+
+def leave_comments(connection: Connection, _study: BuiltStudy, session: Session, values: Values, now: float) -> None:
+    """Keeps the comment, if there is one."""
+    advance(connection, session, now, step="done", comments=values.get("comments", "").strip()[:LONGEST_TEXT] or None)
+
+
+LEAVE: dict[str, Callable[[Connection, BuiltStudy, Session, Values, float], None]] = {
+    "about": leave_about,
+    "instructions": leave_instructions,
+    "ready": leave_ready,
+    "comments": leave_comments,
+}
+
+
+def after_answers(connection: Connection, study: BuiltStudy, session: Session, now: float) -> None:
+    """Moves on when practice or the trials are through; the completion code is made when every rating is stored."""
+    waiting = unanswered(connection, session["id"], limit=1)
+    if session["step"] == "practice" and (not waiting or not waiting[0]["practice"]):
+        advance(connection, session, now, step="ready")
+    elif session["step"] == "trials" and not waiting:
+        finish(connection, study, session, now)
+    else:
+        advance(connection, session, now)
+
+
+def finish(connection: Connection, study: BuiltStudy, session: Session, now: float) -> None:
+    """Closes the session. The ratings are counted, not assumed: no code without every expected row."""
+    expected, stored = expected_and_stored(connection, session["id"], len(study.settings.question))
+    if stored != expected:
+        raise RuntimeError(f"session {session['id']}: {stored} of {expected} ratings stored, yet no trial is left")
+    code = study.settings.survey.completion_code
+    code = code or "".join(secrets.choice(CODE_LETTERS) for _ in range(CODE_LENGTH))
+    step = "comments" if study.settings.survey.comments else "done"
+    advance(connection, session, now, step=step, finished_at=now, completion_code=code)
+    record(connection, session["id"], now, "finished", {})

@@ -1,0 +1,71 @@
+"""The participant's secret address: 128 random bits and 128 bits of proof that this server made them.
+
+A token is valid before anything is stored under it, so that opening the link (or a mail program's preview of it)
+starts nothing; and the same external person always gets the same one, so that first hits may race.
+"""
+
+import base64
+import hashlib
+import hmac
+import secrets
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import Self
+
+BYTES = 16
+LONGEST = 200
+"""Characters of an external name that are kept."""
+
+
+@dataclass(frozen=True)
+class External:
+    """How a recruiting service names its study, the participant and their session there."""
+
+    study: str
+    participant: str
+    session: str = ""
+
+    @classmethod
+    def from_query(cls, query: Mapping[str, str]) -> Self | None:
+        """Prolific's three parameters, or None if the visitor comes without study and participant."""
+        study, participant = query.get("STUDY_ID", "")[:LONGEST], query.get("PROLIFIC_PID", "")[:LONGEST]
+        if not (study and participant):
+            return None
+        return cls(study, participant, query.get("SESSION_ID", "")[:LONGEST])
+
+    def as_query(self) -> dict[str, str]:
+        """The parameters it came from, for a form's hidden fields."""
+        return {"STUDY_ID": self.study, "PROLIFIC_PID": self.participant, "SESSION_ID": self.session}
+
+
+def make_token(key: str, external: External | None) -> str:
+    """A new token, or the one of this external person."""
+    if external is None:
+        nonce = secrets.token_bytes(BYTES)
+    else:
+        nonce = proof(key, f"person\0{external.study}\0{external.participant}".encode())
+    return base64.urlsafe_b64encode(nonce + proof(key, nonce)).decode().rstrip("=")
+
+
+def is_valid(key: str, token: str) -> bool:
+    """Whether `token` was made with `key`."""
+    try:
+        raw = base64.urlsafe_b64decode(token + "=")
+    except ValueError:
+        return False
+    return len(raw) == 2 * BYTES and hmac.compare_digest(proof(key, raw[:BYTES]), raw[BYTES:])
+
+
+def belongs_to(key: str, token: str, external: External) -> bool:
+    """Whether `token` is the one of this external person."""
+    return hmac.compare_digest(token, make_token(key, external))
+
+
+def proof(key: str, message: bytes) -> bytes:
+    """128 bits that only the holder of `key` can compute from `message`."""
+    return hmac.digest(key.encode(), message, hashlib.sha256)[:BYTES]
+
+
+def pseudonym(salt: str, text: str) -> str:
+    """A name for `text` that cannot be turned back without `salt`; for exports."""
+    return hmac.new(salt.encode(), text.encode(), hashlib.sha256).hexdigest()[:16]
