@@ -1,0 +1,212 @@
+"""Plots of mean ratings like the thesis's figures 4.5 and 4.6, with the pictures on the axis and every answer in view."""
+
+import base64
+import io
+import re
+from collections.abc import Sequence
+from dataclasses import dataclass
+from pathlib import Path
+
+import matplotlib as mpl
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.backends.backend_agg import FigureCanvasAgg
+from matplotlib.figure import Figure
+from matplotlib.offsetbox import AnnotationBbox, OffsetImage
+from PIL import Image
+
+from analysis.results import Analysed
+from analysis.sentences import ordered_means
+from analysis.study import Question, StudyInfo
+
+# Okabe & Ito (2008): told apart with every kind of colour vision, and in grey
+COLOURS = ("#0072B2", "#009E73", "#D55E00", "#CC79A7", "#56B4E9", "#E69F00")
+INK, FAINT = "#1d1d1f", "#8a8f98"
+THUMBNAIL = 112
+STYLE = {
+    "font.family": "DejaVu Sans",
+    "font.size": 9,
+    "axes.spines.top": False,
+    "axes.spines.right": False,
+    "axes.edgecolor": FAINT,
+    "axes.labelcolor": INK,
+    "axes.titlesize": 10,
+    "text.color": INK,
+    "xtick.color": INK,
+    "ytick.color": INK,
+    "svg.hashsalt": "fakesss",
+    "svg.fonttype": "path",
+}
+NO_DATE = {"Date": None, "Creator": None, "Format": None, "Type": None}
+
+
+@dataclass(frozen=True)
+class Drawing:
+    """A figure as SVG text and PNG bytes, with its file stem and what it shows in words."""
+
+    stem: str
+    svg: str
+    png: bytes
+    caption: str
+
+    @property
+    def inline(self) -> str:
+        """The SVG for one HTML page among others: no prolog, ids that no other figure has, described for screen readers."""
+        body = self.svg[self.svg.index("<svg") :]
+        body = re.sub(r'(\bid="|url\(#|href="#)', rf"\1{self.stem}-", body)
+        return re.sub(r"<svg\b", f'<svg role="img" aria-labelledby="caption-{self.stem}"', body, count=1)
+
+
+def interval_name(mode: str, confidence: float) -> str:
+    """The kind of interval, for captions."""
+    kind = "within-subject (Cousineau–Morey)" if mode == "repeated" else "between-subject"
+    return f"{confidence:.0%} {kind} confidence interval"
+
+
+def factor_figure(study: StudyInfo, found: Sequence[Analysed], confidence: float) -> Drawing | None:
+    """Figure 4.5: a factor per row, a question per column. None without factor rows."""
+    mine = [each for each in found if each.row.kind == "factor" and each.means is not None]
+    factors = list(dict.fromkeys(each.row.name for each in mine))
+    questions = list(dict.fromkeys(each.row.question for each in mine))
+    if not mine:
+        return None
+    with mpl.rc_context(STYLE):
+        figure = Figure(figsize=(3.1 * len(questions) + 0.5, 3.0 * len(factors) + 0.3), layout="constrained")
+        grid = figure.subplots(len(factors), len(questions), sharey="row", squeeze=False)
+        for each in mine:
+            row, column = factors.index(each.row.name), questions.index(each.row.question)
+            axes = grid[row][column]
+            draw_means(axes, each, study, COLOURS[row % len(COLOURS)])
+            axes.set_xlabel(each.row.name)
+            if row == 0:
+                axes.set_title(each.row.question, fontweight="bold")
+            label_scale(axes, study.question(each.row.question), named=column == 0)
+        caption = (
+            f"Mean ratings by factor (rows) and question (columns). Bars: {interval_name(mine[0].mode, confidence)}. "
+            "Grey discs: all answers, area by count."
+        )
+        return drawn(figure, "figure-4-5-factors", caption)
+
+
+def comparison_figure(study: StudyInfo, found: Sequence[Analysed], confidence: float) -> Drawing | None:
+    """Figure 4.6: the compared pictures side by side. None without comparisons."""
+    mine = [each for each in found if each.row.kind != "factor" and each.means is not None]
+    if not mine:
+        return None
+    with mpl.rc_context(STYLE):
+        most = max(len(each.row.levels) for each in mine)
+        width = max(4.2, 0.95 * most + 1.2)
+        across = 1 if width > 6 else min(len(mine), 2 if width > 4.5 else 3)
+        down = -(-len(mine) // across)
+        figure = Figure(figsize=(min(width, 12) * across, 3.4 * down), layout="constrained")
+        grid = figure.subplots(down, across, squeeze=False).ravel()
+        for axes, each in zip(grid, mine, strict=False):
+            draw_means(axes, each, study, COLOURS[0], joined=False)
+            axes.set_title(each.row.name if each.row.kind == "comparison" else each.row.question, fontweight="bold")
+            label_scale(axes, study.question(each.row.question), named=True)
+        for axes in grid[len(mine) :]:
+            axes.remove()
+        caption = (
+            f"Mean ratings of the pictures compared. Bars: {interval_name(mine[0].mode, confidence)}. "
+            "Grey discs: all answers, area by count."
+        )
+        return drawn(figure, "figure-4-6-comparison", caption)
+
+
+def draw_means(axes: Axes, each: Analysed, study: StudyInfo, colour: str, joined: bool = True) -> None:
+    """Means with intervals over the distribution of answers; below, the pictures and their levels."""
+    table = ordered_means(each)
+    places = np.arange(len(table))
+    draw_answers(axes, each, list(table["level"]))
+    half = (table["ci_high"] - table["mean"]).fillna(0.0)
+    style = "-" if joined else "none"
+    axes.errorbar(
+        places, table["mean"], yerr=half, color=colour, marker="o", markersize=6, linestyle=style, linewidth=1.4,
+        elinewidth=1.8, capsize=4, capthick=1.8, zorder=3,
+    )  # fmt: skip
+    axes.set_xlim(-0.6, len(table) - 0.4)
+    by_code = {level.code: level for level in each.row.levels}
+    labels = []
+    for place, code in zip(places, table["level"], strict=True):
+        level = by_code[str(code)]
+        file = study.picture(level.stimuli[0]).file if len(level.stimuli) == 1 else None
+        if file is not None and file.is_file():
+            place_thumbnail(axes, float(place), file)
+        labels.append(level.label if each.row.kind == "factor" else f"{level.code}\n{folded(level.label)}")
+    pad = 36 if any(isinstance(artist, AnnotationBbox) for artist in axes.artists) else 4
+    axes.set_xticks(places, labels)
+    axes.tick_params(axis="x", length=0, pad=pad)
+
+
+def draw_answers(axes: Axes, each: Analysed, codes: list[object]) -> None:
+    """A faint disc for each answer that was given, area by how many gave it."""
+    for place, code in enumerate(codes):
+        given = each.answers[each.answers["condition"] == code]["rating"].value_counts()
+        share = given / given.sum()
+        axes.scatter(np.full(len(share), place), share.index, s=420 * share, color="#c9ced6", linewidths=0, zorder=1)
+
+
+def label_scale(axes: Axes, question: Question, named: bool) -> None:
+    """The whole scale, its ends named once a row."""
+    axes.set_ylim(0.6, question.scale + 0.4)
+    if question.scale <= 11:
+        axes.set_yticks(range(1, question.scale + 1))
+    axes.grid(axis="y", color="#eceef1", linewidth=0.8, zorder=0)
+    axes.set_axisbelow(True)
+    axes.tick_params(axis="y", length=0)
+    if named:
+        ends = f"  (1 {question.low} – {question.scale} {question.high})" if question.low and question.high else ""
+        axes.set_ylabel("mean rating" + folded(ends, 44))
+
+
+def place_thumbnail(axes: Axes, place: float, file: Path) -> None:
+    """The picture itself below its place on the axis."""
+    box = OffsetImage(np.asarray(thumbnail(file)), zoom=32 / THUMBNAIL)
+    axes.add_artist(
+        AnnotationBbox(
+            box,
+            (place, 0),
+            xybox=(0, -4),
+            xycoords=("data", "axes fraction"),
+            boxcoords="offset points",
+            box_alignment=(0.5, 1),
+            frameon=False,
+            pad=0,
+            annotation_clip=False,
+        )  # fmt: skip
+    )
+
+
+def thumbnail(file: Path, side: int = THUMBNAIL) -> Image.Image:
+    """The picture cut square about its centre and reduced to `side` pixels."""
+    with Image.open(file) as picture:
+        colour = picture.convert("RGB")
+    edge = min(colour.size)
+    left, top = (colour.width - edge) // 2, (colour.height - edge) // 2
+    return colour.crop((left, top, left + edge, top + edge)).resize((side, side), Image.Resampling.LANCZOS)
+
+
+def thumbnail_uri(file: Path) -> str:
+    """The reduced picture as a `data:` address, so that the page needs no other file."""
+    stream = io.BytesIO()
+    thumbnail(file, 192).save(stream, "PNG", optimize=True)
+    return "data:image/png;base64," + base64.b64encode(stream.getvalue()).decode()
+
+
+def folded(text: str, width: int = 14) -> str:
+    """Words on lines of about `width` letters."""
+    lines = [""]
+    for word in text.split():
+        if lines[-1] and len(lines[-1]) + len(word) + 1 > width:
+            lines.append(word)
+        else:
+            lines[-1] = f"{lines[-1]} {word}".strip()
+    return "\n".join(lines)
+
+
+def drawn(figure: Figure, stem: str, caption: str) -> Drawing:
+    """The figure in both formats; no dates inside, so equal data give equal bytes."""
+    svg, png = io.StringIO(), io.BytesIO()
+    figure.savefig(svg, format="svg", metadata=NO_DATE)
+    FigureCanvasAgg(figure).print_figure(png, format="png", dpi=200, metadata={"Software": None})
+    return Drawing(stem, svg.getvalue(), png.getvalue(), caption)

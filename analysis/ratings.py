@@ -1,0 +1,182 @@
+"""Ratings from a CSV file, one row per rating: checked line by line, the latest revision kept, ready for statistics."""
+
+import csv
+from collections.abc import Mapping
+from pathlib import Path
+
+import numpy as np
+import pandas as pd
+
+from analysis.labels import natural_key
+from fakesss.problem import BadInput, nearest
+
+REQUIRED = ("participant", "stimulus", "question", "rating")
+OPTIONAL = (
+    "session",
+    "mode",
+    "trial",
+    "presentation",
+    "revision",
+    "repeat_of",
+    "check_expected",
+    "check_passed",
+    "rt_ms",
+    "answered_at",
+)
+# What other programs and the thesis-shaped files call the same column; the first one found in the file counts.
+ALIASES = {
+    "participant": ("participant", "participant_id", "subject", "subject_id", "rater", "person"),
+    "stimulus": ("stimulus", "stimulus_id", "image", "picture", "item"),
+    "question": ("question", "scale", "attribute", "dimension"),
+    "rating": ("rating", "response", "score", "answer"),
+}
+DEFAULT_SCALE = 7
+
+
+def read_ratings(
+    path: str | Path, columns: Mapping[str, str] | None = None, scale: int | Mapping[str, int] | None = DEFAULT_SCALE
+) -> pd.DataFrame:
+    """The live ratings in `path`, sorted by participant, stimulus and question (natural order).
+
+    `columns` maps our names to the file's (`{"stimulus": "photo"}`); the aliases in `ALIASES` need no mapping.
+    `scale` is the highest answer, for all questions or for each; None allows any finite number.
+    Returns `participant, stimulus, question` (text), `rating` (float, NaN where the file has an empty cell) and those of
+    `OPTIONAL` that the file has (text; numbers for `rt_ms`). Raises `BadInput` with the line number of the first bad row.
+    """
+    path = Path(path)
+    header = read_header(path)
+    chosen = choose_columns(header, columns or {}, path)
+    frame = pd.read_csv(path, dtype=str, keep_default_na=False, usecols=list(chosen.values()), encoding="utf-8-sig")
+    frame = frame.rename(columns={name: ours for ours, name in chosen.items()})
+    if frame.empty:
+        raise BadInput(f"{path}: has a header but no ratings; export again after people have answered")
+    refuse_empty_labels(frame, path)
+    frame = only_live(frame, path)
+    frame["rating"] = numeric_ratings(frame, scale, path)
+    if "rt_ms" in frame:
+        frame["rt_ms"] = pd.to_numeric(frame["rt_ms"], errors="coerce")
+    frame = latest_revision(frame)
+    refuse_duplicates(frame, path)
+    order = [c for c in ("participant", "stimulus", "question", "trial", "presentation") if c in frame]
+    return frame.sort_values(order, key=natural_ranks, kind="stable").reset_index(drop=True)
+
+
+def read_header(path: Path) -> list[str]:
+    """The column names of a CSV file, or `BadInput` when it cannot be read as one."""
+    try:
+        with path.open(newline="", encoding="utf-8-sig") as file:
+            header = next(csv.reader(file), [])
+    except FileNotFoundError:
+        raise BadInput(f"{path}: no such file; check the path") from None
+    except (OSError, UnicodeDecodeError, csv.Error) as error:
+        raise BadInput(f"{path}: cannot be read ({error}); it must be a CSV file in UTF-8") from None
+    if not any(name.strip() for name in header):
+        raise BadInput(f"{path}: is empty; it needs a header line with {', '.join(REQUIRED)}")
+    twice = next((name for name in header if header.count(name) > 1), None)
+    if twice is not None:
+        raise BadInput(f'{path}: two columns are called "{twice}"; rename one')
+    return header
+
+
+def choose_columns(header: list[str], columns: Mapping[str, str], path: Path) -> dict[str, str]:
+    """Our name -> the file's name, for every column that is there; `BadInput` when a required one is not."""
+    by_lower = {name.strip().lower(): name for name in reversed(header)}
+    chosen: dict[str, str] = {}
+    for ours, theirs in columns.items():
+        if ours not in (*REQUIRED, *OPTIONAL):
+            raise BadInput(f'columns: "{ours}" is no column of ratings; {nearest(ours, (*REQUIRED, *OPTIONAL))}')
+        if theirs not in header:
+            raise BadInput(f'{path}: no column "{theirs}" (wanted as {ours}); {nearest(theirs, header)}')
+        chosen[ours] = theirs
+    for ours in (*REQUIRED, *OPTIONAL):
+        found = next((by_lower[alias] for alias in ALIASES.get(ours, (ours,)) if alias in by_lower), None)
+        if ours not in chosen and found is not None and found not in chosen.values():
+            chosen[ours] = found
+    missing = next((ours for ours in REQUIRED if ours not in chosen), None)
+    if missing is not None:
+        raise BadInput(f'{path}: no column "{missing}"; {nearest(missing, header)} (map it with {missing}=NAME)')
+    return chosen
+
+
+def refuse_empty_labels(frame: pd.DataFrame, path: Path) -> None:
+    """A rating without a participant, stimulus or question belongs nowhere."""
+    for name in REQUIRED[:3]:
+        frame[name] = frame[name].str.strip()
+        empty = frame.index[frame[name] == ""]
+        if len(empty):
+            raise BadInput(f"{path}: line {empty[0] + 2}: {name} is empty; fill it in or delete the line")
+
+
+def only_live(frame: pd.DataFrame, path: Path) -> pd.DataFrame:
+    """Pilot answers are never analysed with live ones."""
+    if "mode" not in frame:
+        return frame
+    live = frame[frame["mode"].isin(["live", ""])]
+    if live.empty:
+        raise BadInput(
+            f"{path}: every rating is from a pilot; collect live ratings, or drop the column mode to analyse these"
+        )
+    return live.copy()
+
+
+def numeric_ratings(frame: pd.DataFrame, scale: int | Mapping[str, int] | None, path: Path) -> "pd.Series[float]":
+    """The ratings as numbers, NaN for empty cells; `BadInput` for the first one that is not on its scale."""
+    text = frame["rating"].str.strip()
+    value = pd.to_numeric(text.where(text != ""), errors="coerce").astype(float)
+    unreadable = (text != "") & ~np.isfinite(value)
+    if scale is None:
+        highest = pd.Series(np.inf, index=frame.index)
+    elif isinstance(scale, int):
+        highest = pd.Series(float(scale), index=frame.index)
+    else:
+        highest = frame["question"].map(dict(scale)).astype(float).fillna(np.inf)
+    off_scale = np.isfinite(highest) & value.notna() & ((value < 1) | (value > highest) | (value != value.round()))
+    bad = frame.index[unreadable | off_scale]
+    if len(bad):
+        first = bad[0]
+        must = f"a whole number from 1 to {highest[first]:g}" if np.isfinite(highest[first]) else "a finite number"
+        raise BadInput(f'{path}: line {first + 2}: rating "{text[first]}": must be {must}, or empty if it is missing')
+    return value
+
+
+def latest_revision(frame: pd.DataFrame) -> pd.DataFrame:
+    """Of an answer that was changed, the last one given."""
+    if "revision" not in frame:
+        return frame
+    key = [c for c in ("session", "participant", "trial", "presentation", "stimulus", "question") if c in frame]
+    number = pd.to_numeric(frame["revision"], errors="coerce").fillna(0)
+    latest = number.groupby([frame[name] for name in key]).transform("max")
+    return frame[number == latest].copy()
+
+
+def refuse_duplicates(frame: pd.DataFrame, path: Path) -> None:
+    """Two answers of one person to one question about one picture, neither a repeat nor a revision, are a mistake."""
+    first_showing = ~is_repeat(frame) & ~is_check(frame)
+    key = frame.loc[first_showing, ["participant", "stimulus", "question"]]
+    twice = key.index[key.duplicated()]
+    if len(twice):
+        row = frame.loc[twice[0]]
+        raise BadInput(
+            f'{path}: line {twice[0] + 2}: participant "{row["participant"]}" rated "{row["stimulus"]}" on '
+            f'"{row["question"]}" twice; delete one line, or say which is a repeat in column repeat_of'
+        )
+
+
+def is_repeat(frame: pd.DataFrame) -> "pd.Series[bool]":
+    """Rows of a picture shown again for test-retest."""
+    if "repeat_of" not in frame:
+        return pd.Series(False, index=frame.index)
+    return frame["repeat_of"] != ""
+
+
+def is_check(frame: pd.DataFrame) -> "pd.Series[bool]":
+    """Rows of an instructed item ("choose 2 here"): they measure attention, not the picture."""
+    if "check_expected" not in frame:
+        return pd.Series(False, index=frame.index)
+    return frame["check_expected"] != ""
+
+
+def natural_ranks(column: "pd.Series[str]") -> "pd.Series[int]":
+    """Each label's place in natural order, for sorting."""
+    ranks = {label: rank for rank, label in enumerate(sorted(column.unique(), key=natural_key))}
+    return column.map(ranks)

@@ -1,0 +1,69 @@
+"""What a reader must know before believing a table: plain sentences."""
+
+from collections.abc import Sequence
+
+import pandas as pd
+
+from analysis.plan import BEST, AnalysisPlan
+from analysis.results import Analysed
+from analysis.sample import Sample
+from analysis.study import StudyInfo
+from analysis.wording import counted, joined
+
+
+def remarks(
+    study: StudyInfo, plan: AnalysisPlan, sample: Sample, ratings: pd.DataFrame, found: Sequence[Analysed]
+) -> list[str]:
+    """Warnings in the order of their weight. `found`: the default mode's analyses."""
+    said = [sentence for each in found for sentence in each.trouble]
+    said += design_remarks(study, sample, ratings)
+    for each in found:
+        if each.mode == "repeated" and each.n and each.n[0] <= len(each.row.levels):
+            said.append(
+                f"{each.row.title}: {each.n[0]} participants for {len(each.row.levels)} levels; sphericity cannot be judged."
+            )
+        dropped = str(each.anova.get("dropped", "")) if each.anova is not None else ""
+        if dropped:
+            who = dropped.split("; ")
+            said.append(
+                f"{each.row.title}: {counted(len(who), 'participant')} with a missing cell left out: {joined(who)}."
+            )
+    if any(BEST in comparison.stimuli for comparison in plan.comparison):
+        said.append(
+            'The "best" own picture was picked by the same ratings that are then compared: its mean is flattered by the choice.'
+        )
+    tests = sum(each.p is not None for each in found)
+    if tests > 1 and any(each.p is not None and each.p < plan.alpha for each in found):
+        said.append(
+            f"{tests} tests at the {plan.alpha:.0%} level: about {tests * plan.alpha:.1f} would be significant by chance "
+            "if no picture differed. The Holm column allows for that."
+        )
+    if any(each.row.kind == "comparison" for each in found):
+        said.append('"Non significant" between two pictures is not evidence that they are rated alike.')
+    return said
+
+
+def design_remarks(study: StudyInfo, sample: Sample, ratings: pd.DataFrame) -> list[str]:
+    """Pictures that were never rated or are not listed, and answers that are missing."""
+    said = []
+    rated = set(ratings["stimulus"])
+    unseen = [p.id for p in study.pictures if p.id not in rated]
+    unlisted = sorted(rated - {p.id for p in study.pictures})
+    if unseen:
+        said.append(f"Never rated: {joined(unseen)}.")
+    if unlisted:
+        said.append(f"Rated but not in the manifest: {joined(unlisted)}; used only where a comparison names them.")
+    if sample.n_missing:
+        said.append(f"{counted(sample.n_missing, 'answer')} missing.")
+    return said
+
+
+def agreement_of_tests(found: Sequence[Analysed], alpha: float) -> str:
+    """One sentence: do ranks say the same as means?"""
+    both = [each for each in found if each.p is not None and each.friedman is not None]
+    if not both:
+        return ""
+    apart = [each.row.title for each in both if each.friedman and (each.p or 0) < alpha != (each.friedman["p"] < alpha)]
+    if not apart:
+        return f"Means (ANOVA) and ranks (Friedman) lead to the same decision in all {len(both)} rows."
+    return f"Means (ANOVA) and ranks (Friedman) disagree about {joined(apart)}."

@@ -1,0 +1,140 @@
+"""The report: one page to read, tables and figures to reuse, numbers for machines."""
+
+import json
+import math
+from collections.abc import Callable, Mapping, Sequence
+from pathlib import Path
+from typing import Any
+
+import pandas as pd
+
+from analysis.figures import Drawing, comparison_figure, factor_figure
+from analysis.page import render_page
+from analysis.plan import AnalysisPlan, Mode
+from analysis.provenance import provenance
+from analysis.ratings import DEFAULT_SCALE, read_ratings
+from analysis.remarks import remarks
+from analysis.results import Analysed, analyse, anova_table, hsd_table, means_table, tukey_table
+from analysis.retest import retest_table
+from analysis.rows import rows_of
+from analysis.sample import draw_sample
+from analysis.study import StudyInfo, from_ratings, read_manifest
+from fakesss.problem import BadInput
+
+Progress = Callable[[int, int, str], None]
+
+
+def write_report(
+    ratings: Path,
+    out: Path,
+    *,
+    manifest: Path | None = None,
+    plan: AnalysisPlan | None = None,
+    participants: Path | None = None,
+    columns: Mapping[str, str] | None = None,
+    scale: int = DEFAULT_SCALE,
+    progress: Progress | None = None,
+) -> dict[str, Any]:
+    """Writes index.html, results.json, tables/*.csv and figures/*.svg, *.png into `out`; returns what is in results.json.
+
+    `ratings`: long CSV (contract.md's columns, or others named by `columns` or their aliases). `manifest`: the study's
+    manifest.json, for factors, labels, scales and pictures; without it every picture is compared with every other and answers
+    are 1..`scale`. `plan`: overrides the manifest's `[analysis]`. `participants`: CSV of all who started. `progress(done, total,
+    what)` is called before each analysis and at the end. Raises `BadInput` for what a user can mend.
+    Equal input gives equal bytes.
+    """
+    study = read_manifest(manifest) if manifest is not None else None
+    scales = {q.name: q.scale for q in study.questions} if study is not None else scale
+    frame = read_ratings(ratings, columns, scales)
+    study = study or from_ratings(frame, ratings.stem, scale)
+    refuse_strangers(study, frame, ratings)
+    plan = plan or study.plan
+    sample = draw_sample(frame, plan, participants)
+    rows, notes = rows_of(study, plan, sample.ratings)
+    modes: tuple[Mode, Mode] = ("repeated", "independent")
+    modes = modes if sample.mode == "repeated" else (modes[1], modes[0])
+    jobs = [(row, mode) for mode in modes for row in rows]
+    tell = progress or (lambda done, total, what: None)
+    found: list[Analysed] = []
+    for done, (row, mode) in enumerate(jobs):
+        tell(done, len(jobs), row.title)
+        found.append(analyse(row, sample, plan, mode))
+    tell(len(jobs), len(jobs), "writing")
+    main = found[: len(rows)]
+    said = [*notes, *remarks(study, plan, sample, frame, main)]
+    retests = retest_table(sample.everything, study)
+    tables = {
+        "anova": anova_table(found),
+        "tukey": tukey_table(found),
+        "hsd": hsd_table(found),
+        "means": means_table(found),
+        "retest": retests,
+    }
+    origin = provenance(ratings, frame, study, manifest)
+    results = {
+        "title": study.title,
+        "n_started": sample.n_started,
+        "n_completed": sample.n_completed,
+        "n_analysed": sample.n_analysed,
+        "mode": sample.mode,
+        "alpha": plan.alpha,
+        "excluded": [{"participant": who, "reason": why} for who, why in sample.excluded],
+        **{name: plain(table) for name, table in tables.items()},
+        "warnings": said,
+        "session": origin,
+    }
+    drawings = [
+        d for d in (factor_figure(study, main, plan.confidence), comparison_figure(study, main, plan.confidence)) if d
+    ]
+    page = render_page(study, plan, sample, found, retests, said, drawings, origin)
+    save(out, page, results, tables, drawings)
+    return results
+
+
+def refuse_strangers(study: StudyInfo, frame: pd.DataFrame, ratings: Path) -> None:
+    """Ratings of none of the study's pictures or questions belong to another study."""
+    pictures = {p.id for p in study.pictures}
+    if not pictures & set(frame["stimulus"]):
+        raise BadInput(
+            f'{ratings}: none of its pictures is in the study (it has "{frame["stimulus"].iloc[0]}", the study has '
+            f'"{min(pictures, default="none")}"); are these ratings of another study?'
+        )
+    questions = [q.name for q in study.questions]
+    if not set(questions) & set(frame["question"]):
+        raise BadInput(
+            f'{ratings}: none of its questions is asked by the study (it has "{frame["question"].iloc[0]}", the study asks '
+            f'"{questions[0]}"); are these ratings of another study?'
+        )
+
+
+def plain(table: pd.DataFrame) -> list[dict[str, Any]]:
+    """Records that JSON can hold; a number that does not exist is null."""
+    return [{str(key): machine(value) for key, value in row.items()} for row in table.to_dict("records")]
+
+
+def machine(value: Any) -> Any:
+    """Python's own types; NaN becomes None."""
+    if hasattr(value, "item"):
+        value = value.item()
+    return None if isinstance(value, float) and math.isnan(value) else value
+
+
+def save(
+    out: Path, page: str, results: dict[str, Any], tables: Mapping[str, pd.DataFrame], drawings: Sequence[Drawing]
+) -> None:
+    """All files of the report; `BadInput` where the folder cannot be written."""
+    try:
+        for name in ("tables", "figures"):
+            (out / name).mkdir(parents=True, exist_ok=True)
+        for name, table in tables.items():
+            (out / "tables" / f"{name}.csv").write_text(
+                table.to_csv(index=False, lineterminator="\n"), encoding="utf-8"
+            )
+        for drawing in drawings:
+            (out / "figures" / f"{drawing.stem}.svg").write_text(drawing.svg, encoding="utf-8")
+            (out / "figures" / f"{drawing.stem}.png").write_bytes(drawing.png)
+        text = json.dumps(results, indent=2, ensure_ascii=False, allow_nan=False) + "\n"
+        (out / "results.json").write_text(text, encoding="utf-8")
+        (out / "index.html").write_text(page, encoding="utf-8")
+    except OSError as error:
+        raise BadInput(f"{out}: cannot write the report ({error.strerror}); choose a folder you may write to") from None

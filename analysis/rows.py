@@ -1,0 +1,135 @@
+"""The comparisons a study calls for: which pictures make which samples M1..Mk, on which question."""
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+from typing import Any, Literal
+
+import pandas as pd
+
+from analysis.labels import natural_order
+from analysis.plan import BEST, AnalysisPlan, Comparison
+from analysis.study import Factor, Picture, StudyInfo
+from fakesss.problem import nearest
+
+Kind = Literal["factor", "comparison", "all"]
+
+
+@dataclass(frozen=True)
+class Level:
+    """One sample: the pictures whose ratings it holds (averaged within a person), and what it is called."""
+
+    code: str
+    label: str
+    stimuli: tuple[str, ...]
+    value: Any = None
+
+
+@dataclass(frozen=True)
+class Row:
+    """One analysis: a question by a factor, or by pictures compared."""
+
+    name: str
+    kind: Kind
+    question: str
+    levels: tuple[Level, ...]
+
+    @property
+    def title(self) -> str:
+        """As in table 4.4: question vs factor."""
+        return (
+            f"{self.question[:1].upper()}{self.question[1:]} vs {self.name}" if self.kind != "comparison" else self.name
+        )
+
+    def cells(self, ratings: pd.DataFrame) -> pd.DataFrame:
+        """`participant, condition` (M1..Mk), `rating`: one row per person and sample, averaged over its pictures."""
+        code = {stimulus: level.code for level in self.levels for stimulus in level.stimuli}
+        mine = ratings[(ratings["question"] == self.question) & ratings["stimulus"].isin(list(code))]
+        condition = mine["stimulus"].map(code).rename("condition")
+        return mine.groupby(["participant", condition], sort=True)["rating"].mean().reset_index()
+
+
+def rows_of(study: StudyInfo, plan: AnalysisPlan, ratings: pd.DataFrame) -> tuple[list[Row], list[str]]:
+    """Every row in the order factor, question (the thesis's figure 4.5), then comparisons; and what had to be left out."""
+    rated = set(ratings["stimulus"])
+    questions = [q.name for q in study.questions if q.name in set(ratings["question"])]
+    rows = [row for factor in study.factors for q in questions if (row := factor_row(study, factor, q, rated))]
+    notes: list[str] = []
+    for comparison in declared(study, plan, questions, rated):
+        row = comparison_row(study, comparison, ratings)
+        if isinstance(row, str):
+            notes.append(row)
+        else:
+            rows.append(row)
+    if not rows:
+        rows = [whole_row(study, q, rated) for q in questions]
+    return rows, notes
+
+
+def factor_row(study: StudyInfo, factor: Factor, question: str, rated: set[str]) -> Row | None:
+    """The factor's levels in the order of the design; None where fewer than two were rated."""
+    levels = []
+    for value in factor.levels:
+        stimuli = tuple(p.id for p in study.pictures if in_row(p, factor, value) and p.id in rated)
+        if stimuli:
+            levels.append(Level(f"M{len(levels) + 1}", level_text(value), stimuli, value))
+    return Row(factor.name, "factor", question, tuple(levels)) if len(levels) > 1 else None
+
+
+def in_row(picture: Picture, factor: Factor, value: Any) -> bool:
+    """Whether the picture shows that level in the factor's row."""
+    return picture.role == "factor" and factor.name in picture.rows and dict(picture.levels).get(factor.name) == value
+
+
+def level_text(value: Any) -> str:
+    """25, 1.2, true, (1, 0, 0): as the study writes it."""
+    if isinstance(value, bool):
+        return str(value).lower()
+    if isinstance(value, list | tuple):
+        return "(" + ", ".join(level_text(part) for part in value) + ")"
+    return f"{value:g}" if isinstance(value, float) else str(value)
+
+
+def declared(study: StudyInfo, plan: AnalysisPlan, questions: list[str], rated: set[str]) -> Iterator[Comparison]:
+    """The plan's comparisons; without any, our best picture beside all pictures of other origin, on each question."""
+    yield from plan.comparison
+    others = tuple(p.id for p in study.pictures if p.role == "compare" and p.id in rated)
+    if not plan.comparison and others:
+        yield from (
+            Comparison(name=f"{question}: others vs ours", question=question, stimuli=(BEST, *others))
+            for question in questions
+        )
+
+
+def comparison_row(study: StudyInfo, comparison: Comparison, ratings: pd.DataFrame) -> Row | str:
+    """The row of a declared comparison, or the sentence why it is left out."""
+    where = f'comparison "{comparison.name}"'
+    asked = ratings[ratings["question"] == comparison.question]
+    if asked.empty:
+        return f'{where}: nobody answered question "{comparison.question}"; left out'
+    rated = {str(name) for name in asked["stimulus"].unique()}
+    own = asked[asked["stimulus"].isin([p.id for p in study.pictures if p.role == "factor"])]
+    levels = []
+    for name in comparison.stimuli:
+        if name == BEST and own.empty:
+            return f'{where}: "best" needs own pictures with ratings; left out'
+        identity = best_of(own) if name == BEST else name
+        if identity not in rated:
+            return f'{where}: nobody rated picture "{identity}"; left out ({nearest(identity, rated)})'
+        label = study.picture(identity).label
+        levels.append(Level(f"M{len(levels) + 1}", f"best own, {label}" if name == BEST else label, (identity,)))
+    if len({level.stimuli for level in levels}) < len(levels):
+        return f'{where}: "best" turned out to be a picture that is also named; left out'
+    return Row(comparison.name, "comparison", comparison.question, tuple(levels))
+
+
+def best_of(own: pd.DataFrame) -> str:
+    """The picture with the highest mean; of equals the first in natural order."""
+    means = own.groupby("stimulus")["rating"].mean()
+    return str(next(name for name in natural_order(means.index) if means[name] == means.max()))
+
+
+def whole_row(study: StudyInfo, question: str, rated: set[str]) -> Row:
+    """Without factors: every picture a sample."""
+    pictures = [study.picture(str(name)) for name in natural_order(rated)]
+    levels = (Level(f"M{i}", p.label, (p.id,)) for i, p in enumerate(pictures, 1))
+    return Row("picture", "all", question, tuple(levels))

@@ -1,0 +1,145 @@
+"""Findings in words: first for a reader in a hurry, then in the APA's form to paste."""
+
+from dataclasses import dataclass
+
+import pandas as pd
+
+from analysis.plan import AnalysisPlan
+from analysis.results import Analysed
+from analysis.study import Question, StudyInfo
+from analysis.wording import apa_df, apa_p, joined, no_zero
+
+
+@dataclass(frozen=True)
+class Finding:
+    """What the ratings of one question say."""
+
+    question: Question
+    effects: tuple[str, ...]
+    nothing: str
+
+
+def findings(study: StudyInfo, found: list[Analysed], plan: AnalysisPlan) -> list[Finding]:
+    """For each question which factors matter, in which direction and by how much; then those without a finding."""
+    result = []
+    for question in study.questions:
+        mine = [each for each in found if each.row.question == question.name and each.p is not None]
+        matter = [each for each in mine if each.p is not None and each.p < plan.alpha]
+        rest = [each for each in mine if each not in matter]
+        if mine:
+            effects = tuple(effect_sentence(each, question, plan) for each in sorted(matter, key=gap, reverse=True))
+            result.append(Finding(question, effects, nothing_sentence(rest, plan)))
+    return result
+
+
+def ordered_means(each: Analysed) -> pd.DataFrame:
+    """Label, value and mean of each sample, by level where levels are numbers."""
+    assert each.means is not None
+    by_code = {level.code: level for level in each.row.levels}
+    table = each.means.assign(
+        label=[by_code[code].label for code in each.means["level"]],
+        value=[by_code[code].value for code in each.means["level"]],
+    )
+    numeric = all(isinstance(v, int | float) and not isinstance(v, bool) for v in table["value"])
+    return table.sort_values("value") if numeric and each.row.kind == "factor" else table
+
+
+def gap(each: Analysed) -> float:
+    """Highest mean less lowest."""
+    return 0.0 if each.means is None else float(each.means["mean"].max() - each.means["mean"].min())
+
+
+def effect_sentence(each: Analysed, question: Question, plan: AnalysisPlan) -> str:
+    """Direction, the means, and the largest difference with its simultaneous interval."""
+    table = ordered_means(each)
+    top, bottom = table.loc[table["mean"].idxmax()], table.loc[table["mean"].idxmin()]
+    at = [f"{mean:.2f} at {label}" for mean, label in zip(table["mean"], table["label"], strict=True)]
+    head = f"{direction(each, table)}: {joined(at)}." if each.row.kind == "factor" else picture_head(each, top, bottom)
+    low, high = pair_interval(each, top["level"], bottom["level"])
+    what = "steps" if question.scale <= 11 else "points"
+    return (
+        f"{head} Highest less lowest: {gap(each):.2f} {what} of the {question.scale}-point scale "
+        f"({plan.confidence:.0%} CI {low:.2f} to {high:.2f}), {apa_statistic(each)}."
+    )
+
+
+def direction(each: Analysed, table: pd.DataFrame) -> str:
+    """ "rises with backlight" where means follow the levels, else "depends on backlight"."""
+    name, means = each.row.name, table["mean"]
+    numeric = all(isinstance(v, int | float) and not isinstance(v, bool) for v in table["value"])
+    if numeric and means.is_monotonic_increasing:
+        return f"Rises with {name}"
+    if numeric and means.is_monotonic_decreasing:
+        return f"Falls with {name}"
+    return f"Depends on {name}, highest at {table.loc[means.idxmax(), 'label']}"
+
+
+def picture_head(each: Analysed, top: "pd.Series[float]", bottom: "pd.Series[float]") -> str:
+    """Pictures have no direction: the ends are named."""
+    name = f"{each.row.name}: the pictures differ" if each.row.kind == "comparison" else "The pictures differ"
+    return f"{name}, from {bottom['mean']:.2f} ({bottom['label']}) to {top['mean']:.2f} ({top['label']})."
+
+
+def pair_interval(each: Analysed, top: object, bottom: object) -> tuple[float, float]:
+    """Tukey's interval of top less bottom: it allows for having picked the extremes."""
+    assert each.tukey is not None
+    for pair in each.tukey.to_dict("records"):
+        if {pair["a"], pair["b"]} == {top, bottom}:
+            low, high = float(pair["ci_low"]), float(pair["ci_high"])
+            return (low, high) if pair["a"] == top else (-high, -low)
+    return 0.0, 0.0
+
+
+def nothing_sentence(rest: list[Analysed], plan: AnalysisPlan) -> str:
+    """Absence of a finding, with what the ratings still allow."""
+    if not rest:
+        return ""
+    widest = max(
+        max(abs(each.tukey["ci_low"]).max(), abs(each.tukey["ci_high"]).max())
+        for each in rest
+        if each.tukey is not None
+    )
+    names = joined([each.row.name for each in rest])
+    return (
+        f"No effect of {names} was found. That is not evidence of none: differences of up to {widest:.2f} remain "
+        f"inside the {plan.confidence:.0%} intervals."
+    )
+
+
+def apa_statistic(each: Analysed) -> str:
+    """F(1.93, 83.10) = 22.43, p < .001, with the effect size and its interval."""
+    assert each.anova is not None and each.p is not None
+    shrink = float(each.anova["epsilon_gg"]) if each.mode == "repeated" else 1.0
+    df1, df2 = each.anova["df1"] * shrink, each.anova["df2"] * shrink
+    symbol = "η²G" if each.mode == "repeated" else "η²"
+    _, size, low, high = each.effect
+    return (
+        f"F({apa_df(df1)}, {apa_df(df2)}) = {each.anova['F']:.2f}, {apa_p(each.p)}, "
+        f"{symbol} = {no_zero(size, 3)}, 90% CI [{no_zero(low, 3)}, {no_zero(high, 3)}]"
+    )
+
+
+def apa_sentence(each: Analysed, plan: AnalysisPlan) -> str:
+    """A sentence to paste into a paper."""
+    assert each.p is not None and each.means is not None
+    kind = "repeated-measures ANOVA" if each.mode == "repeated" else "one-way ANOVA"
+    corrected = " (Greenhouse–Geisser corrected)" if each.mode == "repeated" and len(each.row.levels) > 2 else ""
+    verdict = "a significant effect" if each.p < plan.alpha else "no significant effect"
+    what = each.row.name if each.row.kind == "factor" else "picture"
+    cells = [
+        f"{label}: M = {mean:.2f}, SD = {sd:.2f}"
+        for label, mean, sd in ordered_means(each)[["label", "mean", "sd"]].itertuples(index=False)
+    ]
+    where = f" ({each.row.name})" if each.row.kind == "comparison" else ""
+    return (
+        f"A {kind}{corrected} with {people(each)} showed {verdict} of {what} on ratings of “{each.row.question}”{where}, "
+        f"{apa_statistic(each)} ({'; '.join(cells)})."
+    )
+
+
+def people(each: Analysed) -> str:
+    """n, as the mode counts it."""
+    if each.mode == "repeated":
+        return f"{each.n[0]} participants"
+    sizes = f"{each.n[0]}" if len(set(each.n)) == 1 else ", ".join(map(str, each.n))
+    return f"{sizes} ratings a sample"

@@ -1,0 +1,190 @@
+"""Tables for the page: every cell as it will be read."""
+
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass
+
+import pandas as pd
+from statsmodels.stats.multitest import multipletests
+
+from analysis.plan import AnalysisPlan
+from analysis.results import METHODS, Analysed
+from analysis.wording import apa_df, exact_p, no_zero, thesis_hsd, thesis_p, thesis_verdict
+
+
+@dataclass(frozen=True)
+class Table:
+    """A table of text: `text_columns` leading columns are words, the others numbers."""
+
+    anchor: str
+    caption: str
+    head: tuple[str, ...]
+    rows: tuple[tuple[str, ...], ...]
+    text_columns: int = 1
+    note: str = ""
+
+
+def table_4_4(found: Sequence[Analysed], plan: AnalysisPlan) -> Table:
+    """The thesis's table 4.4 in one mode, with what it leaves out beside it."""
+    mode = found[0].mode
+    rows = []
+    for each in found:
+        if each.anova is None:
+            rows.append((each.row.title, "no value", *[""] * 5))
+            continue
+        p = float(each.anova["p"])
+        rows.append(
+            (
+                each.row.title,
+                thesis_p(p),
+                f"{each.anova['F']:.2f}",
+                f"{each.anova['df1']:.0f}, {each.anova['df2']:.0f}",
+                sizes_text(each.n),
+                f"{each.mse:.3f}",
+                exact_p(p),
+            )
+        )
+    return Table(
+        f"table-4-4-{mode}",
+        f"Results of the one-way ANOVA, {METHODS[mode]} (significance level {plan.alpha:.0%})",
+        ("Configuration", "p-value", "F", "df", "n", "MSE", "p, unrounded"),
+        tuple(rows),
+        note="p as the thesis's table 4.4 gives it: without correction for sphericity or for the number of tests.",
+    )
+
+
+def sizes_text(sizes: tuple[int, ...]) -> str:
+    """One number where all samples have it."""
+    return str(sizes[0]) if len(set(sizes)) == 1 else " / ".join(map(str, sizes))
+
+
+def table_4_5(each: Analysed) -> Table:
+    """The thesis's table 4.5 of one comparison."""
+    assert each.tukey is not None and each.means is not None
+    hsd = each.hsd
+    heading = (
+        f"HSD[.05] = {thesis_hsd(hsd[0])}; HSD[.01] = {thesis_hsd(hsd[1])}" if hsd else "HSD differs between pairs"
+    )
+    rows = [
+        (
+            f"{pair['a']} vs {pair['b']}",
+            thesis_verdict(pair["difference"], pair["critical_05"], pair["critical_01"]),
+            f"{abs(pair['difference']):.3f}",
+            f"{pair['q']:.2f}",
+            thesis_p(pair["p"]),
+        )
+        for pair in each.tukey.to_dict("records")
+    ]
+    means = dict(zip(each.means["level"], each.means["mean"], strict=True))
+    samples = "; ".join(f"{level.code} {level.label} ({means[level.code]:.2f})" for level in each.row.levels)
+    first = each.tukey.iloc[0]
+    note = f"Means: {samples}. n = {sizes_text(each.n)}, df = {first['df']}, MSE = {first['mse']:.3f}."
+    if hsd:
+        note += f" Unrounded HSD {hsd[0]:.4f} and {hsd[1]:.4f} decide."
+    return Table(
+        f"table-4-5-{each.mode}-{each.row.question}",
+        f"Tukey HSD test of {each.row.name} on “{each.row.question}”, {METHODS[each.mode]} ({heading})",
+        ("Samples", "P", "|difference|", "q", "p (Tukey)"),
+        tuple(rows),
+        text_columns=2,
+        note=note,
+    )
+
+
+def table_of_tests(found: Sequence[Analysed]) -> Table:
+    """The test that fits the design: corrected for sphericity and for the number of tests, with effect size and ranks."""
+    tested = [each for each in found if each.p is not None]
+    holm = multipletests([each.p for each in tested], method="holm")[1] if tested else []
+    repeated = bool(found) and found[0].mode == "repeated"
+    rows = [test_cells(each, float(adjusted)) for each, adjusted in zip(tested, holm, strict=True)]
+    columns = (
+        "Configuration",
+        "F",
+        "df",
+        "ε GG",
+        "ε HF",
+        "p",
+        "p Holm",
+        "η²G",
+        "90% CI",
+        "Friedman χ²",
+        "Kendall W",
+        "p ranks",
+    )
+    if not repeated:
+        columns = ("Configuration", "F", "df", "p", "p Holm", "η²", "90% CI")
+    note = f"p Holm: adjusted over the {len(tested)} tests of this table."
+    if repeated:
+        note = f"df and p are Greenhouse–Geisser corrected; ε HF for comparison. η²G: generalized eta squared. {note}"
+    caption = "Repeated-measures ANOVA" if repeated else "One-way ANOVA of independent samples"
+    return Table("table-tests", f"{caption}, corrected, with effect sizes", columns, tuple(rows), note=note)
+
+
+def test_cells(each: Analysed, adjusted: float) -> tuple[str, ...]:
+    """One line of `table_of_tests`."""
+    assert each.anova is not None and each.p is not None
+    _, size, low, high = each.effect
+    tail = (no_zero(size, 3), f"[{no_zero(low, 3)}, {no_zero(high, 3)}]")
+    if each.mode == "independent":
+        df = f"{each.anova['df1']:.0f}, {each.anova['df2']:.0f}"
+        return each.row.title, f"{each.anova['F']:.2f}", df, thesis_p(each.p), thesis_p(adjusted), *tail
+    shrink = each.anova["epsilon_gg"]
+    df = f"{apa_df(each.anova['df1'] * shrink)}, {apa_df(each.anova['df2'] * shrink)}"
+    ranks = ("–", "–", "–")
+    if each.friedman is not None:
+        ranks = (f"{each.friedman['chi2']:.2f}", no_zero(each.friedman["kendalls_w"], 3), thesis_p(each.friedman["p"]))
+    epsilons = (f"{shrink:.3f}", f"{each.anova['epsilon_hf']:.3f}")
+    return each.row.title, f"{each.anova['F']:.2f}", df, *epsilons, thesis_p(each.p), thesis_p(adjusted), *tail, *ranks
+
+
+def table_of_pairs(found: Iterable[Analysed], confidence: float) -> Table:
+    """Every pair of every row: Tukey's simultaneous intervals, and Holm-adjusted paired t tests where people are the same."""
+    rows = []
+    for each in found:
+        if each.tukey is None:
+            continue
+        labels = {level.code: level.label for level in each.row.levels}
+        holm = each.contrasts.to_dict("records") if each.contrasts is not None else [None] * len(each.tukey)
+        for pair, contrast in zip(each.tukey.to_dict("records"), holm, strict=True):
+            paired = ("–", "–") if contrast is None or pd.isna(contrast["p_holm"]) else (
+                thesis_p(contrast["p_holm"]), f"{contrast['d_z']:.2f}"
+            )  # fmt: skip
+            interval = f"[{pair['ci_low']:.2f}, {pair['ci_high']:.2f}]"
+            cells = (f"{pair['difference']:.2f}", interval, thesis_p(pair["p"]), *paired)
+            rows.append((each.row.title, f"{labels[pair['a']]} − {labels[pair['b']]}", *cells))
+    return Table(
+        "table-pairs",
+        "All pairs",
+        (
+            "Configuration",
+            "Pair",
+            "Difference",
+            f"{confidence:.0%} CI (Tukey)",
+            "p (Tukey)",
+            "p (paired t, Holm)",
+            "d_z",
+        ),
+        tuple(rows),
+        text_columns=2,
+        note="Tukey's intervals hold together for all pairs of a row. d_z: mean difference over the SD of differences.",
+    )
+
+
+def table_of_retests(retests: pd.DataFrame) -> Table | None:
+    """Self-agreement on pictures shown more than once."""
+    if retests.empty:
+        return None
+    rows = [
+        (
+            entry["question"],
+            entry["showings"],
+            str(entry["n"]),
+            entry["means"],
+            f"{entry['within_sd']:.2f}",
+            f"{entry['mean_abs_difference']:.2f}",
+            f"{entry['share_equal']:.0%}",
+            f"{entry['share_within_1']:.0%}",
+        )
+        for entry in retests.to_dict("records")
+    ]
+    head = ("Question", "Showings", "n", "Means", "Within-person SD", "Mean |difference|", "Same answer", "Within 1")
+    return Table("table-retest", "One picture, shown more than once", head, tuple(rows), text_columns=2)

@@ -1,0 +1,52 @@
+"""Numbers as the thesis prints them, and as the APA's manual does."""
+
+import math
+
+
+def thesis_p(p: float) -> str:
+    """Table 4.4's form: "< .0001", four places below .01, else three."""
+    if p < 0.0001:
+        return "< .0001"
+    return f"{p:.4f}" if p < 0.01 else f"{p:.3f}"
+
+
+def exact_p(p: float) -> str:
+    """Six significant digits; below 1e-10 only the bound, as no rating study supports such digits."""
+    return "< 1e-10" if p <= 1e-10 else f"{p:.6g}" if p < 1e-4 else f"{p:.6f}"
+
+
+def thesis_hsd(value: float) -> str:
+    """Table 4.5's form: two places, trailing zeros dropped (1.0025 -> "1")."""
+    return f"{value:.2f}".rstrip("0").rstrip(".")
+
+
+def thesis_verdict(difference: float, critical_05: float, critical_01: float) -> str:
+    """Table 4.5's wording. The unrounded difference meets the unrounded HSD: 1.0000 is below an HSD that prints as "1"."""
+    if abs(difference) >= critical_01:
+        return "P < .01"
+    return "P < .05" if abs(difference) >= critical_05 else "Non significant"
+
+
+def no_zero(value: float, places: int) -> str:
+    """APA: no zero before the point of a number that cannot exceed 1."""
+    return f"{value:.{places}f}".replace("0.", ".", 1) if abs(value) < 1 else f"{value:.{places}f}"
+
+
+def apa_p(p: float) -> str:
+    """p = .012, p < .001."""
+    return "p < .001" if p < 0.001 else f"p = {no_zero(p, 3)}"
+
+
+def apa_df(df: float) -> str:
+    """Whole degrees of freedom as they are, corrected ones to two places."""
+    return f"{df:g}" if math.isclose(df, round(df), abs_tol=1e-9) else f"{df:.2f}"
+
+
+def joined(words: list[str]) -> str:
+    """a, b and c."""
+    return words[0] if len(words) == 1 else f"{', '.join(words[:-1])} and {words[-1]}" if words else ""
+
+
+def counted(n: int, noun: str) -> str:
+    """1 participant, 2 participants."""
+    return f"{n} {noun}" if n == 1 else f"{n} {noun}s"
