@@ -1,7 +1,8 @@
 """What was slow to make, kept by content: the key is a hash of everything the result depends on.
 
-A folder of .npz files under the user's cache directory; the environment variable FAKESSS_CACHE names another one. It may be
-deleted at any time. An entry that cannot be read is made again, a folder that cannot be written only costs time.
+A folder of .npz files under the user's cache directory; the environment variable FAKESSS_CACHE names another one.
+It may be deleted at any time. An entry that cannot be read is made again; a folder that cannot be written costs only
+time.
 """
 
 import hashlib

@@ -76,12 +76,13 @@ class Ellipsoid:
     def distance(self, points: Floats) -> Floats:
         local = points - np.array(self.centre)
         if self.axes is not None:
-            local = local @ self.axes
+            local = np.einsum("ij,jk->ik", local, self.axes)
         scaled = local / np.array(self.radii)
         size = np.sqrt((scaled**2).sum(axis=1))
         slope = np.sqrt(((scaled / np.array(self.radii)) ** 2).sum(axis=1))
         inner = -min(self.radii) * np.ones_like(size)
-        return np.divide(size * (size - 1), slope, out=inner, where=slope > 1e-9)
+        distance: Floats = np.divide(size * (size - 1), slope, out=inner, where=slope > 1e-9)
+        return distance
 
 
 @dataclass(frozen=True)
@@ -146,7 +147,8 @@ def to_curve(offset: Floats, side: Floats, bend: Floats, a: Floats, b: Floats, c
     """Distance from the points behind `offset` to the surface of the tube's ball at curve parameter `t`."""
     away = offset + (2 * t)[:, None] * side + (t * t)[:, None] * bend
     radius = a[3] + 2 * t * (b - a)[3] + t * t * (a - 2 * b + c)[3]
-    return np.sqrt((away**2).sum(axis=1)) - radius
+    distance: Floats = np.sqrt((away**2).sum(axis=1)) - radius
+    return distance
 
 
 @dataclass(frozen=True)

@@ -35,7 +35,10 @@ def evaluate(field: Distance, points: Floats) -> Floats:
 
 
 def surface(field: Distance, box: Box, faces: int) -> tuple[Floats, Floats, Indices]:
-    """Positions (V, 3), unit normals (V, 3) and triangles (F, 3) of the zero set inside `box`; F within 3% of `faces`."""
+    """Positions (V, 3), unit normals (V, 3) and triangles (F, 3) of the zero set inside `box`.
+
+    F is within 3% of `faces`.
+    """
     wanted = max(faces, FINE_FACES)
     step = float(np.max(np.subtract(box[1], box[0]))) / 64
     _, triangles = cut(field, box, step)
@@ -74,7 +77,9 @@ def gradient(field: Distance, points: Floats, step: float) -> Floats:
     corners = np.array([[1, 1, 1], [1, -1, -1], [-1, 1, -1], [-1, -1, 1]], float)
     reach = 0.05 * step
     values = evaluate(field, (points[:, None] + corners * reach).reshape(-1, 3)).reshape(-1, 4)
-    return values @ corners / (4 * reach)
+    # not by BLAS, whose order of summation may differ between machines
+    slope: Floats = np.einsum("ij,jk->ik", values, corners) / (4 * reach)
+    return slope
 
 
 def on_zero_set(field: Distance, points: Floats, step: float) -> Floats:

@@ -44,7 +44,7 @@ class Mesh:
         for array in (self.positions, self.normals, self.faces):
             array.setflags(write=False)
             digest.update(repr(array.shape).encode())
-            digest.update(np.ascontiguousarray(array))
+            digest.update(np.ascontiguousarray(array).data)
         object.__setattr__(self, "sha256", digest.hexdigest())
 
 

@@ -2,8 +2,8 @@
 
 Done: triangles with a corner that is not finite or with two equal corners are dropped, vertices at one place become
 one, copies of a triangle are dropped, neighbours are wound alike, closed surfaces are turned outwards.
-Not done: holes are not filled and self-intersections are not resolved. Triangles whose corners lie on a line stay: they draw nothing,
-and dropping them would open the surface.
+Not done: holes are not filled and self-intersections are not resolved. Triangles whose corners lie on a line stay:
+they draw nothing, and dropping them would open the surface.
 """
 
 from typing import Any
@@ -31,7 +31,7 @@ def drop_unusable_faces(positions: Floats, faces: Indices, repairs: list[str]) -
             f"Dropped {counted(int((~known).sum()), 'triangle', 'triangles')} naming vertices that are not there."
         )
         faces = faces[known]
-    finite = np.isfinite(positions).all(axis=1)[faces].all(axis=1)
+    finite = np.isfinite(positions[faces]).all(axis=(1, 2))
     if not finite.all():
         repairs.append(
             f"Dropped {counted(int((~finite).sum()), 'triangle', 'triangles')} with NaN or infinite corners."
@@ -43,7 +43,8 @@ def drop_unusable_faces(positions: Floats, faces: Indices, repairs: list[str]) -
         repairs.append(
             f"Dropped {counted(int(collapsed.sum()), 'triangle', 'triangles')} with two corners at one place."
         )
-    return faces[~collapsed]
+    distinct: Indices = faces[~collapsed]
+    return distinct
 
 
 def row_ids(columns: list[NDArray[np.int64]]) -> NDArray[np.int64]:
@@ -137,7 +138,7 @@ def wind_alike(
     parts: tuple[int, NDArray[np.int32]],
     repairs: list[str],
 ) -> Faces:
-    """Faces flipped so that neighbours agree, the smaller share of each connected part being the one that is flipped."""
+    """Faces flipped so that neighbours agree; in each connected part the smaller share is flipped."""
     count, part = parts
     _, first = np.unique(part, return_index=True)
     root = len(faces)  # one node above all parts makes a single tree of them

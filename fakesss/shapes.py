@@ -58,3 +58,8 @@ def built_in(shape: str, faces: int = DEFAULT_FACES) -> Mesh:
     key = {"version": VERSION, "shape": shape, "faces": faces}
     arrays, _ = cache.cached("shapes", key, make)
     return mesh_from_surface(arrays["positions"], arrays["normals"], arrays["faces"])
+
+
+def names() -> tuple[str, ...]:
+    """The built-in objects."""
+    return tuple(BUILT_IN)

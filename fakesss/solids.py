@@ -39,7 +39,7 @@ def sphere(faces: int) -> Surface:
         triangle = corners[list(side)]
         if np.linalg.det(triangle) < 0:
             triangle = triangle[::-1]
-        points.append(normalised(weights @ triangle))
+        points.append(normalised(np.einsum("ij,jk->ik", weights, triangle)))
         triangles.append(patch + number * len(weights))
     # seams are computed twice with different rounding: equal to 9 digits is one point, far below any edge's length
     _, first, same = np.unique(np.round(np.concatenate(points), 9), axis=0, return_index=True, return_inverse=True)
@@ -52,14 +52,16 @@ def box(faces: int) -> Surface:
     half = np.array(BOX_HALF)
     area = 8 * (half[0] * half[1] + half[1] * half[2] + half[2] * half[0])
     cells = np.maximum(1, np.round(2 * half * np.sqrt(faces / 2 / area))).astype(int)
-    points, normals, triangles = [], [], []
+    points: list[Floats] = []
+    normals: list[Floats] = []
+    triangles: list[NDArray[np.int64]] = []
     for axis in range(3):
         for sign in (-1.0, 1.0):
             u, v = ((axis + 1) % 3, (axis + 2) % 3)[:: int(sign)]
             grid_u, grid_v = np.meshgrid(*(np.linspace(-half[a], half[a], cells[a] + 1) for a in (u, v)), indexing="ij")
             side = np.empty((grid_u.size, 3))
             side[:, axis], side[:, u], side[:, v] = sign * half[axis], grid_u.ravel(), grid_v.ravel()
-            triangles.append(grid(cells[u] + 1, cells[v] + 1, closed=False) + sum(map(len, points)))
+            triangles.append(grid(cells[u] + 1, cells[v] + 1, closed=False) + sum(len(side) for side in points))
             points.append(side)
             normals.append(np.tile(sign * np.eye(3)[axis], (len(side), 1)))
     return np.concatenate(points), np.concatenate(normals), np.concatenate(triangles)
@@ -130,4 +132,5 @@ def frame(points: Floats) -> Floats:
     twist = np.arctan2(np.cross(first, last) @ tangent[0], first @ last)
     turn = -twist * np.arange(len(points)) / len(points)
     across = np.array(sides[:-1])
-    return across * np.cos(turn)[:, None] + np.cross(tangent, across) * np.sin(turn)[:, None]
+    turned: Floats = across * np.cos(turn)[:, None] + np.cross(tangent, across) * np.sin(turn)[:, None]
+    return turned

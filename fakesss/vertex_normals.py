@@ -26,7 +26,8 @@ CREASE_DEGREES = (
 def normalised(vectors: Floats) -> Floats:
     """Unit vectors along (..., 3) `vectors`; a zero vector stays zero."""
     length = np.sqrt((vectors**2).sum(axis=-1, keepdims=True))
-    return np.divide(vectors, length, out=np.zeros_like(vectors), where=length > 0)
+    unit: Floats = np.divide(vectors, length, out=np.zeros_like(vectors), where=length > 0)
+    return unit
 
 
 def face_normals(positions: NDArray[np.floating[Any]], faces: Faces) -> Floats:
@@ -40,7 +41,8 @@ def corner_angles(positions: NDArray[np.floating[Any]], faces: Faces) -> Floats:
     """The triangles' angles (F, 3), radians, at their three corners."""
     points = positions[faces].astype(np.float64)
     sides = normalised(np.roll(points, -1, axis=1) - points)  # from each corner to the next
-    return np.arccos(np.clip(-(sides * np.roll(sides, 1, axis=1)).sum(axis=2), -1, 1))
+    angles: Floats = np.arccos(np.clip(-(sides * np.roll(sides, 1, axis=1)).sum(axis=2), -1, 1))
+    return angles
 
 
 def with_creases(positions: Floats32, faces: Faces) -> tuple[Floats32, Floats32, Faces]:
@@ -54,7 +56,7 @@ def with_creases(positions: Floats32, faces: Faces) -> tuple[Floats32, Floats32,
     origin, faces = split_at_creases(len(positions), faces, flat)
     positions = positions[origin]
     weighted = corner_angles(positions, faces)[:, :, None] * flat[:, None, :]
-    total = np.stack(
+    total: Floats = np.stack(
         [np.bincount(faces.ravel(), weighted[:, :, axis].ravel(), len(positions)) for axis in range(3)], axis=1
     )
     normals = normalised(total)

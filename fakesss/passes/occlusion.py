@@ -8,13 +8,13 @@ from fakesss.scene import Scene
 
 
 def occlusion(scene: Scene) -> Bake:
-    """Reads `mesh`; writes `occlusion`, (V,) float32 in 0..1."""
+    """Reads `mesh`; writes `occlusion`, a `fakesss.occlusion.Baked` with (V,) float32 values in 0..1."""
     rays, sampling = scene.occlusion.rays, scene.occlusion.sampling
 
     def make(inputs: Mapping[str, Any]) -> Any:
         from fakesss.occlusion import bake_occlusion  # loads Embree, which a scene without ambient light never needs
 
-        return bake_occlusion(inputs["mesh"], rays, sampling)
+        return bake_occlusion(inputs["mesh"], rays, sampling).values
 
     return Bake(
         "occlusion",

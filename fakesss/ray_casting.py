@@ -1,0 +1,36 @@
+"""Rays against a mesh through Embree (Wald et al., *Embree: a kernel framework*, 2014), as its binding takes them."""
+
+import numpy as np
+from embreex.mesh_construction import TriangleMesh
+from embreex.rtcore_scene import EmbreeScene
+from numpy.typing import NDArray
+
+from fakesss.mesh import Mesh
+
+Floats = NDArray[np.float64]
+Floats32 = NDArray[np.float32]
+
+NOTHING = -1
+
+
+class Caster:
+    """A mesh's bounding-volume hierarchy. Rays are (N, 3) float32 origins and directions; safe to use from threads."""
+
+    def __init__(self, mesh: Mesh) -> None:
+        self._scene = EmbreeScene()
+        # Embree reads the arrays where they lie, so they must live as long as the scene
+        self._vertices = np.ascontiguousarray(mesh.positions)
+        self._faces = np.ascontiguousarray(mesh.faces)
+        self._geometry = TriangleMesh(self._scene, self._vertices, self._faces)
+        # the first query builds the hierarchy, which two threads must not do at once
+        self.first_face(np.zeros((1, 3), np.float32), np.ones((1, 3), np.float32))
+
+    def first_face(self, origins: Floats32, directions: Floats32) -> NDArray[np.int32]:
+        """The index of the first triangle that each ray hits, or `NOTHING`."""
+        found: NDArray[np.int32] = self._scene.run(origins, directions, query="INTERSECT")
+        return found
+
+    def blocked(self, origins: Floats32, directions: Floats32) -> NDArray[np.bool_]:
+        """Whether each ray hits anything."""
+        found: NDArray[np.int32] = self._scene.run(origins, directions, query="OCCLUDED")
+        return found != NOTHING
