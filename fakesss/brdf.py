@@ -21,7 +21,7 @@ def power(base: ArrayLike, exponent: ArrayLike) -> Array:
 
 def lambert(n_dot_l: ArrayLike) -> Array:
     """max(N.L, 0), eq. 3.8; the thesis leaves out 1/pi, so a white diffuser under unit light shows 1."""
-    return np.maximum(np.asarray(n_dot_l, float), 0.0)
+    return np.asarray(np.maximum(n_dot_l, 0.0), float)
 
 
 def blinn_phong(n_dot_l: ArrayLike, n_dot_h: ArrayLike, shininess: ArrayLike) -> Array:

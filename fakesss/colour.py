@@ -25,4 +25,5 @@ def to_8bit(linear: NDArray[Any]) -> NDArray[np.uint8]:
 
 def luminance(linear: NDArray[Any]) -> NDArray[np.float64]:
     """Relative luminance (...) of linear RGB (..., 3) with sRGB primaries."""
-    return np.asarray(linear, np.float64) @ np.array([0.2126, 0.7152, 0.0722])
+    rgb = np.asarray(linear, np.float64)
+    return np.asarray(0.2126 * rgb[..., 0] + 0.7152 * rgb[..., 1] + 0.0722 * rgb[..., 2])

@@ -18,7 +18,7 @@ FULLSCREEN = "fullscreen.vert"
 
 
 @dataclass(frozen=True)
-class Baked:
+class Made:
     """A CPU-made resource: what it is, how long it took now (seconds) and whether it was at hand already."""
 
     value: Any
@@ -31,7 +31,7 @@ class Outcome:
     """The targets of one run, bottom row first for pictures, and what each node cost."""
 
     values: Mapping[str, Any]
-    baked: Mapping[str, Baked]
+    baked: Mapping[str, Made]
     gpu_ms: Mapping[str, float]  # empty unless timed
 
 
@@ -80,7 +80,7 @@ class Run:
     timed: bool = False
     live: dict[str, Any] = field(default_factory=dict)
     lent: dict[str, TextureSpec] = field(default_factory=dict)
-    baked: dict[str, Baked] = field(default_factory=dict)
+    baked: dict[str, Made] = field(default_factory=dict)
     queries: dict[str, Any] = field(default_factory=dict)
 
     def __call__(self) -> Outcome:
@@ -115,7 +115,7 @@ class Run:
         key = (node.name, node.key(inputs))
         cached, start = key in self.bakes, time.perf_counter()
         value = self.bakes.get(key, lambda: node.make(inputs))
-        self.baked[node.name] = Baked(value, time.perf_counter() - start, cached)
+        self.baked[node.name] = Made(value, time.perf_counter() - start, cached)
         self.live[node.name] = value
 
     def _draw(self, node: Pass, inputs: Mapping[str, Any]) -> None:

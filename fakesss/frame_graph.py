@@ -130,20 +130,22 @@ class FrameGraph:
         return Plan(verdicts, targets, dead_after)
 
     def _verdict(self, node: Node, kept: list[Node], targets: tuple[str, ...]) -> Verdict:
-        asked = [f'"{resource}" is asked for' for resource in node.writes if resource in targets]
+        asked = [f"{resource} is asked for" for resource in node.writes if resource in targets]
         if node in kept:
-            readers = [other.name for other in kept if set(other.reads).intersection(node.writes)]
-            return Verdict(node, True, "; ".join(asked or [f"read by {' and '.join(readers)}"]))
-        reasons: list[str] = []
-        for other in self.nodes:
-            if other in kept:
-                reasons += [f"not read by {other.name}: {why}" for r, why in other.unread.items() if r in node.writes]
-            elif set(other.reads).intersection(node.writes):
-                reasons.append(f"read only by {other.name}, which is culled")
+            return Verdict(node, True, "; ".join(asked) or f"read by {in_words(readers_of(node, kept))}")
+        reasons = [
+            f"not read by {other.name}: {why}"
+            for other in kept
+            for resource, why in other.unread.items()
+            if resource in node.writes
+        ]
+        if culled := readers_of(node, [other for other in self.nodes if other not in kept]):
+            are = "which is culled" if len(culled) == 1 else "which are culled"
+            reasons.append(f"read only by {in_words(culled)}, {are}")
         return Verdict(node, False, "; ".join(dict.fromkeys(reasons)) or "nothing that is asked for reads it")
 
     def to_dot(self, plan: Plan | None = None) -> str:
-        """Graphviz source: passes as boxes, baked inputs as houses, resources as edges; what `plan` culled is dashed."""
+        """Graphviz source: passes as boxes, baked inputs as houses, resources as edges; what is culled is dashed."""
         kept = {node.name for node in (plan.kept if plan else self.nodes)}
         lines = ["digraph frame {", "  rankdir=LR; node [fontname=Helvetica]; edge [fontname=Helvetica fontsize=10]"]
         for node in self.nodes:
@@ -155,3 +157,13 @@ class FrameGraph:
                 source = self.writer[resource].name
                 lines.append(f'  "{source}" -> "{node.name}" [label="{resource}" style={alive}]')
         return "\n".join([*lines, "}\n"])
+
+
+def readers_of(node: Node, others: Iterable[Node]) -> list[str]:
+    """Names of those among `others` that read what `node` writes."""
+    return [other.name for other in others if set(other.reads).intersection(node.writes)]
+
+
+def in_words(names: list[str]) -> str:
+    """`a`, `a and b`, `a, b and c`."""
+    return " and ".join([", ".join(names[:-1]), names[-1]] if len(names) > 1 else names)

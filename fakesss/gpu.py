@@ -63,19 +63,26 @@ def create() -> Gpu:
         found = f"{context.version_code // 100}.{context.version_code % 100 // 10}"
         context.release()
         raise BadInput(f"OpenGL: version {found} found where 3.3 is needed; {MEND}")
-    with context.query(time=True):  # Mesa's first timer query of a context reports nonsense
-        context.finish()
+    warm_up_timer(context)
     return Gpu(context)
+
+
+def warm_up_timer(context: Any) -> int:
+    """Run one timer query and return its nanoseconds: the first of a context reads 2^32 - 1 on Mesa."""
+    with (query := context.query(time=True)):
+        context.finish()
+    return int(query.elapsed)
 
 
 def first_context() -> Any:
     """moderngl's context; on Linux once more with the libraries' full names, for systems without `-dev` links."""
+    create_context: Any = moderngl.create_context  # its type stub does not know the backends' own arguments
     if not sys.platform.startswith("linux"):
-        return moderngl.create_context(standalone=True)
+        return create_context(standalone=True)
     try:
-        return moderngl.create_context(standalone=True, backend="egl")
+        return create_context(standalone=True, backend="egl")
     except Exception:
-        return moderngl.create_context(standalone=True, backend="egl", **EXPLICIT_NAMES)
+        return create_context(standalone=True, backend="egl", **EXPLICIT_NAMES)
 
 
 @contextmanager

@@ -28,7 +28,7 @@ def read_picture(path: str | Path) -> tuple[NDArray[np.uint8], tuple[str, ...]]:
         raise BadInput(f"{path}: has pixels of kind {picture.mode}; save it as 8-bit RGB in sRGB")
     if picture.format == "PNG" and bit_depth(path) != 8:
         raise BadInput(f"{path}: has {bit_depth(path)} bits a channel; save it as 8-bit RGB in sRGB")
-    if picture.mode == "RGBA" and picture.getextrema()[3][0] != 255:
+    if picture.mode == "RGBA" and np.asarray(picture)[..., 3].min() != 255:
         raise BadInput(f"{path}: is partly transparent; flatten it onto its background and save it as RGB")
     warnings = check_colour_space(path, picture)
     return np.asarray(picture.convert("RGB")), warnings

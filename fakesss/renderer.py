@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from fakesss import gpu as opengl
-from fakesss.frame import Baked, Outcome, Run
+from fakesss.frame import Made, Outcome, Run
 from fakesss.frame_graph import FrameGraphError, Plan
 from fakesss.image_io import check_output, write_image
 from fakesss.pipeline import build, samples_of
@@ -30,7 +30,7 @@ class Rendering:
     passes: list[dict[str, Any]]  # {"name", "gpu_ms"} in the order they ran; gpu_ms is None unless timed
     warnings: tuple[str, ...]  # one sentence each
     non_finite: int  # pixels with a value that is not finite; always 0, counted rather than believed
-    baked: dict[str, Baked]
+    baked: dict[str, Made]
 
 
 class Renderer:
@@ -53,7 +53,8 @@ class Renderer:
     def data(self, scene: Scene, targets: tuple[str, ...], samples: int = 1) -> dict[str, Any]:
         """Resources by name, top row first: one sample at each pixel's centre, so data is never averaged.
 
-        Pictures are (H, W) or (H, W, components) float32, 0 outside coverage; baked resources are as they were made.
+        Pictures are (H, W) or (H, W, components) float32, 0 outside coverage; baked resources are as they were made:
+        a `Mesh`, an `occlusion.Baked`.
         """
         outcome = self._run(scene, targets, samples)[1]
         return {name: upright(value) for name, value in outcome.values.items()}
@@ -69,8 +70,8 @@ class Renderer:
         largest = int(self.gpu.context.info["GL_MAX_TEXTURE_SIZE"])
         if max(size) > largest:
             raise BadInput(
-                f"scene: size {scene.size[0]}x{scene.size[1]} with supersampling {samples} needs {max(size)} samples in "
-                f"a row, this OpenGL has {largest}; lower size or supersampling"
+                f"scene: size {scene.size[0]}x{scene.size[1]} with supersampling {samples} needs {max(size)} samples "
+                f"in a row, this OpenGL has {largest}; lower size or supersampling"
             )
         if size != self.buffer_size:
             self.gpu.pool.release()
@@ -128,9 +129,9 @@ def render_file(scene: Scene, out: str | Path, views: bool = False) -> dict[str,
     """
     path = check_output(out)
     drawn = shared_renderer().render(scene, timed=True)
-    picture = drawn.image
+    picture: NDArray[Any] = drawn.image
     if views:
-        from fakesss.inspect import contact_sheet
+        from fakesss.inspect import contact_sheet  # loads matplotlib
 
         picture = contact_sheet(scene)
     write_image(path, picture)

@@ -10,7 +10,7 @@ from fakesss.frame_graph import TextureSpec
 
 @dataclass
 class TexturePool:
-    """Transient float32 textures by spec. What is taken has nearest filtering and clamped edges, whoever had it before."""
+    """Transient float32 textures by spec. What is taken filters by nearest and clamps, whoever had it before."""
 
     context: Any
     free: dict[TextureSpec, list[Any]] = field(default_factory=dict)

@@ -14,7 +14,9 @@ def front(scene: Scene, view: View, size: tuple[int, int]) -> Pass:
     lacking = no_occlusion_because(scene)
 
     def draw(frame: Frame) -> None:
-        program = frame.program("front.vert", "front.frag", {"tangent": view.tangent, "clip": (view.near, view.far)}, {})
+        program = frame.program(
+            "front.vert", "front.frag", {"tangent": view.tangent, "clip": (view.near, view.far)}, {}
+        )
         draw_mesh(frame, view, program, [normals(frame, view), occlusion(frame, scene)])
 
     return Pass(
@@ -43,5 +45,5 @@ def occlusion(frame: Frame, scene: Scene) -> Attribute:
         key = ("open", len(mesh.positions))
         return upload(frame, key, lambda: np.ones(len(mesh.positions), np.float32)), "1f", "in_occlusion"
     baked = ("occlusion", mesh.sha256, scene.occlusion.rays, scene.occlusion.sampling)
-    values = frame.inputs["occlusion"]
-    return upload(frame, baked, lambda: values.astype(np.float32)), "1f", "in_occlusion"
+    values = frame.inputs["occlusion"].values
+    return upload(frame, baked, lambda: values), "1f", "in_occlusion"
