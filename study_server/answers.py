@@ -84,7 +84,9 @@ def accepted(connection: Connection, study: BuiltStudy, session: RowMapping, sen
 def is_due(connection: Connection, session: RowMapping, planned: RowMapping) -> bool:
     """Whether this presentation is the one the participant is at."""
     step = "practice" if planned["practice"] else "trials"
-    return session["step"] == step and unanswered(connection, session["id"], limit=1)[0]["place"] == planned["place"]
+    if session["step"] != step:
+        return False
+    return bool(unanswered(connection, session["id"], limit=1)[0]["place"] == planned["place"])
 
 
 def store(connection: Connection, planned: RowMapping, sent: Posted, now: float) -> list[dict[str, Any]]:

@@ -27,6 +27,13 @@ You can answer with the mouse, by touch, or with the keys 1 to {scale}. When eve
 Enter key. Answers are saved as you go: after an interruption, open this page again and you continue where you were."""
 
 
+def refuse_twins(key: str, names: list[str]) -> None:
+    """`ValueError` if a name occurs twice."""
+    twins = sorted({name for name in names if names.count(name) > 1})
+    if twins:
+        raise ValueError(f'two {key} entries are named "{twins[0]}"; give each a name of its own')
+
+
 class Question(Strict):
     """One rating scale under every picture: equal steps from `low` (1) to `high` (`scale`)."""
 
@@ -112,10 +119,3 @@ def check_survey(study_table: Mapping[str, Any], source: str) -> SurveySettings:
     """
     owned = {key: study_table[key] for key in ("question", "survey") if key in study_table}
     return validated(SurveySettings, owned, source)
-
-
-def refuse_twins(key: str, names: list[str]) -> None:
-    """`ValueError` if a name occurs twice."""
-    twins = sorted({name for name in names if names.count(name) > 1})
-    if twins:
-        raise ValueError(f'two {key} entries are named "{twins[0]}"; give each a name of its own')

@@ -9,6 +9,7 @@ from typing import Annotated, Any, Literal
 from fastapi import Depends, Request, Response
 from fastapi.responses import JSONResponse
 from fastapi.templating import Jinja2Templates
+from jinja2 import Environment, FileSystemLoader, StrictUndefined
 
 from study_server.database import Database
 from study_server.manifest import BuiltStudy
@@ -17,7 +18,12 @@ from study_server.throttle import Throttle
 Mode = Literal["live", "pilot"]
 
 HERE = Path(__file__).parent
-templates = Jinja2Templates(HERE / "templates", autoescape=True, trim_blocks=True, lstrip_blocks=True)
+environment = Environment(
+    loader=FileSystemLoader(HERE / "templates"), autoescape=True, undefined=StrictUndefined, trim_blocks=True,
+    lstrip_blocks=True,
+)  # fmt: skip
+environment.globals.update(mode="", session=None)  # pages outside a session
+templates = Jinja2Templates(env=environment)
 
 
 @dataclass
@@ -82,7 +88,8 @@ def answer(request: Request, template: str, data: Mapping[str, Any], http_status
     """`data` as a page, or as JSON if that is what was asked for."""
     if wants_json(request):
         return JSONResponse(dict(data), http_status)
-    return templates.TemplateResponse(request, template, dict(data), http_status)
+    page: Response = templates.TemplateResponse(request, template, dict(data), http_status)
+    return page
 
 
 def sorry(request: Request, http_status: int, sentence: str) -> Response:
