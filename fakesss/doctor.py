@@ -63,17 +63,14 @@ def finding(name: str, probe: Callable[[], str], needed_for: str, mend: str) -> 
 
 def python() -> str:
     """The interpreter's version."""
-    if sys.version_info < (3, 11):
-        raise BadInput(f"{sys.version.split()[0]} is older than 3.11")
     return sys.version.split()[0]
 
 
 def opengl() -> str:
     """Renderer and version of the context that pictures are drawn with."""
-    from fakesss.gpu import renderer_facts
+    from fakesss.gpu import shared
 
-    facts = renderer_facts()
-    return f"{facts['gl_version']}, {facts['gl_renderer']}"
+    return f"{shared().version}, {shared().renderer}"
 
 
 def embree() -> str:
@@ -96,8 +93,9 @@ def database() -> str:
 
 def cache_folder() -> str:
     """The folder baked data is kept in, after a write into it."""
-    from fakesss.cache import cache_folder as folder
+    from fakesss.cache import folder
 
+    folder().mkdir(parents=True, exist_ok=True)
     with tempfile.TemporaryFile(dir=folder()):
         return str(folder())
 

@@ -39,9 +39,11 @@ class Drawn:
 
 def software() -> dict[str, str]:
     """Who draws: the manifest's `software` table. Opens the OpenGL context."""
-    from fakesss.gpu import renderer_facts
+    from fakesss.gpu import shared
 
-    return {"fakesss": fakesss.__version__, "moderngl": version("moderngl"), **renderer_facts()}
+    gpu = shared()
+    facts = {"fakesss": fakesss.__version__, "moderngl": version("moderngl")}
+    return {**facts, "gl_renderer": gpu.renderer, "gl_version": gpu.version}
 
 
 def build_key(stimulus: Stimulus, size: tuple[int, int], folder: Path, made_by: dict[str, str]) -> str:
@@ -71,7 +73,8 @@ def draw(stimulus: Stimulus, *, size: tuple[int, int], folder: Path) -> Drawn:
 
 def read_made_elsewhere(stimulus: Stimulus, size: tuple[int, int], folder: Path) -> Drawn:
     """A comparison picture, its pixels unchanged, as a PNG that states its colour space."""
-    from fakesss.image_io import encode_png8, read_picture
+    from fakesss.image_io import encode_png8
+    from fakesss.picture_reading import read_picture
 
     path = folder / str(stimulus.image)
     pixels, warnings = read_picture(path)

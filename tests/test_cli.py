@@ -116,9 +116,12 @@ def test_render_reports_as_json(tmp_path: Path) -> None:
 
 def test_set_overrides_one_field_and_refuses_an_unknown_one(tmp_path: Path) -> None:
     out = tmp_path / "x.png"
-    assert fakesss("render", "sphere:4000", "--size", "16x16", "--set", "material.backlight=0", "-o", out).returncode == 0
+    assert (
+        fakesss("render", "sphere:4000", "--size", "16x16", "--set", "material.backlight=0", "-o", out).returncode == 0
+    )
     expect_sentence(
-        fakesss("render", "sphere:4000", "--set", "material.backlihgt=0", "-o", out), 'did you mean "material.backlight"?'
+        fakesss("render", "sphere:4000", "--set", "material.backlihgt=0", "-o", out),
+        'did you mean "material.backlight"?',
     )
 
 

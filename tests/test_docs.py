@@ -4,13 +4,15 @@ from pathlib import Path
 
 import pytest
 
+import fakesss.cli_picture
+import fakesss.cli_study  # noqa: F401  (both add their commands)
 from analysis.plan import AnalysisPlan, Comparison, Exclusions
 from fakesss.cli import commands
 from fakesss.pipeline import build
 from fakesss.scene import Scene, scene_paths
 from fakesss.shapes import names
 from stimuli.study import Compare, Design, Factor, Study
-from study_server.export import RATING_COLUMNS
+from study_server.columns import RATINGS
 from study_server.settings import AboutField, Question, Survey
 
 ROOT = Path(__file__).parent.parent
@@ -24,7 +26,7 @@ DOCUMENTED = [
     ("scene", list(scene_paths())),
     ("study", [*Study.model_fields, *Factor.model_fields, *Design.model_fields, *Compare.model_fields]),
     ("survey", [*Question.model_fields, *Survey.model_fields, *AboutField.model_fields]),
-    ("survey", list(RATING_COLUMNS)),
+    ("survey", list(RATINGS)),
     ("statistics", [*AnalysisPlan.model_fields, *Comparison.model_fields, *Exclusions.model_fields]),
     ("objects", list(names())),
     ("technique", [node.name for node in build(Scene()).nodes]),

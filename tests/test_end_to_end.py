@@ -53,11 +53,7 @@ def test_the_report_counts_what_the_server_counted(results: dict[str, Any]) -> N
 
 def test_the_report_recovers_the_planted_effects(results: dict[str, Any]) -> None:
     """The default raters: more exponent looks more translucent, more backlight less, no diffuse weight less."""
-    p = {
-        (row["question"], row["factor"]): row["p"]
-        for row in results["anova"]
-        if row["method"].startswith("repeated")
-    }
+    p = {(row["question"], row["factor"]): row["p"] for row in results["anova"] if row["method"].startswith("repeated")}
     assert p["translucent", "thickness exponent"] < 0.001
     assert p["translucent", "backlight"] < 0.01
     assert p["translucent", "diffuse weight"] < 0.01

@@ -1,0 +1,146 @@
+"""Commands about pictures and this machine: render, explain, bake, doctor."""
+
+import sys
+import tomllib
+from collections.abc import Callable, Iterator, Mapping
+from pathlib import Path
+from typing import Any, Literal
+
+import click
+
+from fakesss.cli import AS_JSON, commands, done, say
+from fakesss.problem import BadInput
+
+
+def drawing(command: Callable[..., None]) -> Callable[..., None]:
+    """The argument and options that name a scene."""
+    for option in (
+        click.argument("scene"),
+        click.option("--set", "changes", multiple=True, metavar="PATH=VALUE", help="Change one field of the scene."),
+        click.option("--size", metavar="WxH", help="Pixels, for example 512x512."),
+    ):
+        command = option(command)
+    return command
+
+
+@commands.command()
+@drawing
+@click.option("-o", "--out", default="image.png", show_default=True, help="A .png (8-bit sRGB) or .exr (linear float).")
+@click.option("--views", is_flag=True, help="A contact sheet of the intermediates instead of the picture.")
+@AS_JSON
+def render(scene: str, changes: tuple[str, ...], size: str | None, out: str, views: bool, as_json: bool) -> None:
+    """Draw one picture of SCENE: a TOML file, a mesh file, a built-in object, or STUDY#stimulus-id.
+
+    Example: fakesss render bunny.ply --set material.backlight=0.8 --size 317x211 -o bunny.png
+    """
+    from fakesss.renderer import render_file
+
+    result = render_file(scene_named(scene, changes, size), out, views)
+    for warning in result["warnings"]:
+        say(warning)
+    done(result, as_json, f"{result['image']}: {result['width']}x{result['height']}, {result['gl_renderer']}")
+
+
+@commands.command()
+@drawing
+@click.option("--time/--no-time", "timed", default=False, help="Draw once and report GPU times.")
+@click.option("--graph", is_flag=True, help="Graphviz source of the frame graph, culled passes dashed.")
+@AS_JSON
+def explain(scene: str, changes: tuple[str, ...], size: str | None, timed: bool, graph: bool, as_json: bool) -> None:
+    """List the passes of SCENE: kept or culled, why, what each reads and writes.
+
+    Example: fakesss explain figure --set material.backlight=0
+    """
+    from fakesss import inspect
+
+    described = scene_named(scene, changes, size)
+    result = inspect.explain(described, timed)
+    done(result, as_json, inspect.graph(described) if graph else "\n".join(explained(result)))
+
+
+@commands.command()
+@click.argument("mesh")
+@click.option("--rays", default=320, show_default=True, type=click.IntRange(1), help="Rays per vertex.")
+@click.option("--sampling", default="cosine", show_default=True, type=click.Choice(["cosine", "uniform"]))
+@AS_JSON
+def bake(mesh: str, rays: int, sampling: Literal["cosine", "uniform"], as_json: bool) -> None:
+    """Bake the ambient occlusion of MESH (a file or a built-in object) into the cache.
+
+    Example: fakesss bake knot:60000 --rays 1024
+    """
+    from fakesss.mesh import load_object
+    from fakesss.occlusion import bake_occlusion
+
+    baked = bake_occlusion(load_object(mesh), rays, sampling)
+    result = {"mesh": mesh, "vertices": len(baked.values), "rays": rays, "sampling": sampling}
+    result |= {"mean": float(baked.values.mean()), "seconds": baked.seconds, "cached": baked.cached}
+    done(result, as_json, f"{mesh}: {len(baked.values)} vertices, {'cached' if baked.cached else 'baked'}")
+
+
+@commands.command()
+@AS_JSON
+def doctor(as_json: bool) -> None:
+    """Tell what this machine has of what a study needs, and which line mends what is missing.
+
+    Example: fakesss doctor
+    """
+    from fakesss import doctor as examination
+
+    findings = examination.look()
+    result = examination.report(findings)
+    done(result, as_json, "\n".join(examination.lines(findings)))
+    sys.exit(0 if result["ok"] else 1)
+
+
+def scene_named(name: str, changes: tuple[str, ...], size: str | None) -> Any:
+    """The `Scene` that a command line argument means, with `--set` and `--size` applied."""
+    from fakesss.scene import Scene
+
+    path = Path(name)
+    if "#" in name and not path.exists():
+        scene = scene_of_stimulus(name)
+    elif path.suffix == ".toml":
+        scene = Scene.load(path)
+    else:
+        scene = Scene(object=name)
+    overrides = dict(setting(text) for text in changes)
+    if size is not None:
+        width, cross, height = size.partition("x")
+        if not (cross and width.isdigit() and height.isdigit()):
+            raise BadInput(f'--size "{size}": write width x height in pixels, for example 512x512')
+        overrides["size"] = [int(width), int(height)]
+    return scene.replace(overrides, "--set") if overrides else scene
+
+
+def setting(text: str) -> tuple[str, Any]:
+    """`material.backlight=0.8` as path and value; the value is TOML, or text where it is none."""
+    path, equals, value = text.partition("=")
+    if not equals:
+        raise BadInput(f'--set "{text}": write path=value, for example material.backlight=0.8')
+    try:
+        return path.strip(), tomllib.loads(f"value = {value}")["value"]
+    except tomllib.TOMLDecodeError:
+        return path.strip(), value.strip()
+
+
+def scene_of_stimulus(name: str) -> Any:
+    """The scene behind one stimulus of a built study: `STUDY#img03`."""
+    from fakesss.problem import nearest
+    from fakesss.scene import Scene
+    from stimuli.manifest import read_manifest
+
+    folder, _, identity = name.rpartition("#")
+    entries = {entry["id"]: entry for entry in read_manifest(Path(folder))["stimuli"]}
+    if identity not in entries:
+        raise BadInput(f'{folder}: no stimulus "{identity}"; {nearest(identity, entries)}')
+    if entries[identity]["scene"] is None:
+        raise BadInput(f"{name}: was made elsewhere, there is no scene to draw; name one of the study's own pictures")
+    return Scene.from_dict(entries[identity]["scene"], f"{folder}/stimuli/manifest.json").relative_to(Path(folder))
+
+
+def explained(result: Mapping[str, Any]) -> Iterator[str]:
+    """The `explain` document as a person reads it."""
+    for entry in (*result["baked"], *result["passes"]):
+        kept = "kept  " if entry["kept"] else "culled"
+        took = f"  {entry['gpu_ms']:.2f} ms" if entry.get("gpu_ms") is not None else ""
+        yield f"{kept}  {entry['name']:10} {entry['because']}{took}"

@@ -1,0 +1,221 @@
+"""Commands about a study: new, build, verify, serve, run, simulate, export, report."""
+
+import sys
+from collections.abc import Callable, Mapping
+from functools import partial
+from pathlib import Path
+from typing import Any, Literal
+
+import click
+
+from fakesss.cli import AS_JSON, commands, done, say
+
+Mode = Literal["live", "pilot", "simulated"]
+STUDY = click.argument("study", type=click.Path(path_type=Path))
+
+
+@commands.command()
+@click.argument("folder", type=click.Path(path_type=Path))
+@click.option("--template", default="thesis", show_default=True, help="thesis, minimal or factorial.")
+@AS_JSON
+def new(folder: Path, template: str, as_json: bool) -> None:
+    """Write a commented study.toml into FOLDER.
+
+    Example: fakesss new my-study --template factorial
+    """
+    from stimuli.template import write_template
+
+    path = write_template(folder, template)
+    done({"study": str(path)}, as_json, f"{path}\nnext: fakesss run {folder}")
+
+
+@commands.command()
+@STUDY
+@click.option("--jobs", default=1, show_default=True, type=click.IntRange(1), help="Processes that draw.")
+@click.option("--force", is_flag=True, help="Draw even what is up to date.")
+@AS_JSON
+def build(study: Path, jobs: int, force: bool, as_json: bool) -> None:
+    """Draw the pictures of STUDY that are missing or stale, and write its manifest.
+
+    Example: fakesss build my-study --jobs 2
+    """
+    manifest = build_study(study, jobs, force)
+    count = len(manifest["stimuli"])
+    done(manifest, as_json, f"{study / 'stimuli'}: {count} pictures, {len(distinct(manifest))} distinct")
+
+
+def build_study(study: Path, jobs: int = 1, force: bool = False) -> dict[str, Any]:
+    """All of study.toml checked, each table by its owner, before the first picture is drawn."""
+    from analysis.plan import check_analysis
+    from fakesss.scene import read_toml
+    from stimuli.build import build
+    from stimuli.study import study_file
+    from study_server.settings import check_survey
+
+    path = study_file(study)
+    table = read_toml(path)
+    check_survey(table, path.name)
+    check_analysis(table, path.name)
+    manifest = build(study, jobs=jobs, force=force)
+    for warning in dict.fromkeys(f"{e['id']}: {text}" for e in manifest["stimuli"] for text in e["warnings"]):
+        say(warning)
+    return manifest
+
+
+def distinct(manifest: Mapping[str, Any]) -> set[str]:
+    """Hashes of the pictures, each once."""
+    return {entry["sha256"] for entry in manifest["stimuli"]}
+
+
+@commands.command()
+@STUDY
+@AS_JSON
+def verify(study: Path, as_json: bool) -> None:
+    """Draw every picture of STUDY again in memory and compare its bytes with the manifest.
+
+    Example: fakesss verify my-study
+    """
+    from stimuli.build import verify as compare
+
+    problems = compare(study)
+    done({"equal": not problems, "problems": problems}, as_json, "\n".join(problems) or "every picture is the same")
+    sys.exit(1 if problems else 0)
+
+
+def serving(command: Callable[..., None]) -> Callable[..., None]:
+    """The options of `serve` and `run`."""
+    for option in (
+        click.option("--host", default="127.0.0.1", show_default=True, help="Address to listen on."),
+        click.option("--port", default=8000, show_default=True, type=click.IntRange(0, 65535), help="0: any free."),
+        click.option("--database", metavar="URL", help="Where ratings go (default: STUDY/ratings.sqlite)."),
+        click.option("--pilot", is_flag=True, help="A try-out: kept apart from live answers everywhere."),
+    ):
+        command = option(command)
+    return command
+
+
+@commands.command()
+@STUDY
+@serving
+def serve(study: Path, host: str, port: int, database: str | None, pilot: bool) -> None:
+    """Show the survey of STUDY to browsers and record their ratings.
+
+    Example: fakesss serve my-study --port 8080
+    """
+    serve_study(study, host, port, database, pilot)
+
+
+@commands.command()
+@STUDY
+@serving
+def run(study: Path, host: str, port: int, database: str | None, pilot: bool) -> None:
+    """Build STUDY, then serve it.
+
+    Example: fakesss run my-study
+    """
+    build_study(study)
+    serve_study(study, host, port, database, pilot)
+
+
+def serve_study(study: Path, host: str, port: int, database: str | None, pilot: bool) -> None:
+    """The survey with the report behind /admin/report, until interrupted."""
+    from study_server.serve import serve as serve_until_interrupted
+
+    mode: Mode = "pilot" if pilot else "live"
+    make_report = partial(report_folder, study, database, mode)
+    serve_until_interrupted(study, host, port, database_url=database, mode=mode, make_report=make_report)
+
+
+@commands.command()
+@STUDY
+@click.option("--url", help="A survey that runs already, in any mode; without it one is started and stopped again.")
+@click.option("--started", default=44, show_default=True, type=click.IntRange(1), help="Raters who begin.")
+@click.option("--completed", default=38, show_default=True, type=click.IntRange(0), help="Raters who finish.")
+@click.option("--seed", default=2011, show_default=True, help="Everything drawn by lot follows from it.")
+@click.option("--effects", type=click.Path(path_type=Path), help="TOML file of the raters' effects (docs/survey.md).")
+@AS_JSON
+def simulate(
+    study: Path, url: str | None, started: int, completed: int, seed: int, effects: Path | None, as_json: bool
+) -> None:
+    """Let simulated raters answer STUDY over HTTP. Their answers are marked as simulated.
+
+    Example: fakesss simulate my-study --started 44 --completed 38
+    """
+    from study_server.simulate import simulate as walk
+
+    from study_server.serve import served
+
+    go = partial(walk, study=study, started=started, completed=completed, seed=seed, effects=effects)
+    if url is None:
+        with served(study, mode="simulated") as own:
+            result = go(url=own)
+    else:
+        result = go(url=url)
+    text = "\n".join(f"{name:13} {value}" for name, value in result.items())
+    done(result, as_json, text)
+    sys.exit(1 if result["lost"] or result["duplicated"] else 0)
+
+
+@commands.command()
+@STUDY
+@click.option("-o", "--out", type=click.Path(path_type=Path), help="Folder for the files (default: STUDY/export).")
+@click.option("--database", metavar="URL", help="Where the ratings are (default: STUDY/ratings.sqlite).")
+@click.option("--mode", type=click.Choice(["live", "pilot", "simulated"]), default="live", show_default=True)
+@AS_JSON
+def export(study: Path, out: Path | None, database: str | None, mode: Mode, as_json: bool) -> None:
+    """Write ratings, participants, events, stimuli and a codebook of STUDY as CSV.
+
+    Example: fakesss export my-study -o data
+    """
+    from study_server.export import export_ratings
+
+    files = [str(path) for path in export_ratings(study, out or study / "export", mode=mode, database_url=database)]
+    done({"files": files}, as_json, "\n".join(files))
+
+
+@commands.command()
+@STUDY
+@click.option("-o", "--out", type=click.Path(path_type=Path), help="Folder of the report (default: STUDY/report).")
+@click.option("--ratings", type=click.Path(path_type=Path), help="A CSV from elsewhere instead of STUDY's ratings.")
+@click.option("--database", metavar="URL", help="Where the ratings are (default: STUDY/ratings.sqlite).")
+@AS_JSON
+def report(study: Path, out: Path | None, ratings: Path | None, database: str | None, as_json: bool) -> None:
+    """Analyse the ratings of STUDY: report/index.html, tables, figures, results.json.
+
+    Live ratings where there are any, otherwise simulated ones, and then every page says so.
+
+    Example: fakesss report my-study
+    """
+    from study_server.counts import mode_to_analyse
+
+    out = out or study / "report"
+    if ratings is None:
+        results = report_study(study, out, database, mode_to_analyse(study, database))
+    else:
+        results = write(ratings, out, study, participants=None)
+    for warning in results["warnings"]:
+        say(warning)
+    done(results, as_json, str(out / "index.html"))
+
+
+def report_study(study: Path, out: Path, database: str | None, mode: Mode) -> dict[str, Any]:
+    """The report on the study's own ratings; what was analysed lies beside it in `data/`."""
+    from study_server.export import export_ratings
+
+    files = {p.stem: p for p in export_ratings(study, out / "data", mode=mode, database_url=database)}
+    return write(files["ratings"], out, study, files["participants"])
+
+
+def report_folder(study: Path, database: str | None, mode: Mode) -> Path:
+    """The report as the admin page shows it, written now."""
+    out = study / "report"
+    report_study(study, out, database, mode)
+    return out
+
+
+def write(ratings: Path, out: Path, study: Path, participants: Path | None) -> dict[str, Any]:
+    """The report on a CSV file of ratings of the study's pictures."""
+    from analysis.report import write_report
+    from stimuli.manifest import manifest_path
+
+    return write_report(ratings, out, manifest=manifest_path(study), participants=participants)
