@@ -42,7 +42,7 @@ class Frame:
     gpu: Gpu
     node: Pass
     inputs: Mapping[str, Any]
-    size: tuple[int, int]
+    target: Any  # a moderngl.Framebuffer over `node.writes`
 
     def program(self, vertex: str, fragment: str, uniforms: Mapping[str, Any], defines: Mapping[str, Any]) -> Any:
         """The program of two files, fed: `HAS_<INPUT>` follows the wiring, textures are bound under their names."""
@@ -124,7 +124,7 @@ class Run:
         target = self.gpu.pool.framebuffer(textures, size, node.depth_test)
         with self.gpu.context.scope(target, moderngl.DEPTH_TEST if node.depth_test else moderngl.NOTHING):
             target.clear()
-            node.draw(Frame(self.gpu, node, inputs, size))
+            node.draw(Frame(self.gpu, node, inputs, target))
 
     def _give_back(self, resource: str) -> None:
         value = self.live.pop(resource)

@@ -1,7 +1,6 @@
 """Pictures made elsewhere, to be rated beside ours: read only if what their numbers mean is sure."""
 
 import io
-import struct
 from pathlib import Path
 
 import numpy as np
@@ -11,6 +10,7 @@ from PIL import Image, ImageCms, UnidentifiedImageError
 from fakesss.problem import BadInput
 
 SRGB_GAMMA = (0.45454, 0.45455, 0.45456)  # how encoders round 1/2.2 in a gAMA chunk beside or instead of sRGB
+PNG_BIT_DEPTH = 24  # offset of the byte in the header
 MOST_PIXELS = 16384 * 16384
 
 
@@ -21,37 +21,40 @@ def read_picture(path: str | Path) -> tuple[NDArray[np.uint8], tuple[str, ...]]:
     a warning. Refused: 16-bit, palette, CMYK, transparent, animated, other profiles, other gammas.
     """
     path = Path(path)
-    picture = opened(path)
+    data = content(path)
+    picture = opened(path, data)
     if getattr(picture, "n_frames", 1) != 1:
         raise BadInput(f"{path}: is an animation; save one frame of it as PNG")
     if picture.mode not in ("RGB", "RGBA", "L"):
         raise BadInput(f"{path}: has pixels of kind {picture.mode}; save it as 8-bit RGB in sRGB")
-    if picture.format == "PNG" and bit_depth(path) != 8:
-        raise BadInput(f"{path}: has {bit_depth(path)} bits a channel; save it as 8-bit RGB in sRGB")
+    if picture.format == "PNG" and data[PNG_BIT_DEPTH] != 8:  # Pillow reads 16-bit RGB as 8-bit without a word
+        raise BadInput(f"{path}: has {data[PNG_BIT_DEPTH]} bits a channel; save it as 8-bit RGB in sRGB")
     if picture.mode == "RGBA" and np.asarray(picture)[..., 3].min() != 255:
         raise BadInput(f"{path}: is partly transparent; flatten it onto its background and save it as RGB")
     warnings = check_colour_space(path, picture)
     return np.asarray(picture.convert("RGB")), warnings
 
 
-def opened(path: Path) -> Image.Image:
+def content(path: Path) -> bytes:
+    """The file's bytes, or `BadInput`."""
+    try:
+        return path.read_bytes()
+    except FileNotFoundError:
+        raise BadInput(f"{path}: no such picture; check the path") from None
+    except OSError as error:
+        raise BadInput(f"{path}: cannot be read ({error.strerror}); it must be a readable file") from None
+
+
+def opened(path: Path, data: bytes) -> Image.Image:
     """The decoded picture, or `BadInput`."""
     try:
-        picture = Image.open(path)
+        picture = Image.open(io.BytesIO(data))
         if picture.width * picture.height > MOST_PIXELS:
             raise BadInput(f"{path}: is {picture.width}x{picture.height} pixels; resize it to the study's pictures")
         picture.load()
-    except FileNotFoundError:
-        raise BadInput(f"{path}: no such picture; check the path") from None
     except (UnidentifiedImageError, OSError, SyntaxError, Image.DecompressionBombError) as error:
         raise BadInput(f"{path}: cannot be read as a picture ({error}); save it as PNG") from None
     return picture
-
-
-def bit_depth(path: Path) -> int:
-    """Bits a channel in a PNG's header; Pillow reads 16-bit RGB as 8-bit without a word."""
-    with path.open("rb") as file:
-        return int(struct.unpack("24xB", file.read(25))[0])
 
 
 def check_colour_space(path: Path, picture: Image.Image) -> tuple[str, ...]:

@@ -16,16 +16,11 @@ class TexturePool:
     free: dict[TextureSpec, list[Any]] = field(default_factory=dict)
     depth_buffers: dict[tuple[int, int], Any] = field(default_factory=dict)
     framebuffers: dict[tuple[int, ...], Any] = field(default_factory=dict)
-    allocated: int = 0
 
     def take(self, spec: TextureSpec) -> Any:
         """A texture of this spec with unspecified contents."""
         spare = self.free.get(spec)
-        if spare:
-            texture = spare.pop()
-        else:
-            texture = self.context.texture(spec.size, spec.components, dtype="f4")
-            self.allocated += 1
+        texture = spare.pop() if spare else self.context.texture(spec.size, spec.components, dtype="f4")
         texture.filter = (moderngl.NEAREST, moderngl.NEAREST)
         texture.repeat_x = texture.repeat_y = False
         texture.swizzle = "RGBA"

@@ -1,0 +1,53 @@
+"""The context, and what a user is told where there is none."""
+
+import subprocess
+import sys
+import threading
+
+import pytest
+
+from fakesss.gpu import Gpu, renderer_facts, shared, warm_up_timer
+
+ASK = """
+import sys
+from fakesss.gpu import shared
+from fakesss.problem import BadInput
+try:
+    shared()
+except BadInput as error:
+    print(error)
+    sys.exit(2)
+"""
+NO_DRIVER = {"__EGL_VENDOR_LIBRARY_FILENAMES": "/nonexistent", "LIBGL_DRIVERS_PATH": "/nonexistent"}
+
+
+@pytest.mark.gl
+def test_without_a_driver_one_sentence_names_the_mend(monkeypatch: pytest.MonkeyPatch) -> None:
+    for name, value in NO_DRIVER.items():
+        monkeypatch.setenv(name, value)
+    run = subprocess.run([sys.executable, "-c", ASK], capture_output=True, text=True, check=False)
+    assert run.returncode == 2, run.stderr
+    assert run.stdout.count("\n") == 1
+    assert run.stdout.startswith("OpenGL: no off-screen context (")
+    assert "apt-get install libegl1 libgl1" in run.stdout
+
+
+@pytest.mark.gl
+def test_one_context_per_thread(gpu: Gpu) -> None:
+    others: list[Gpu] = []
+    thread = threading.Thread(target=lambda: others.append(shared()))
+    thread.start()
+    thread.join()
+    assert shared() is gpu and others[0] is not gpu
+
+
+@pytest.mark.gl
+def test_facts_for_the_manifest(gpu: Gpu) -> None:
+    facts = renderer_facts()
+    assert facts.keys() == {"gl_renderer", "gl_version"} and all(facts.values())
+    assert gpu.context.version_code >= 330
+
+
+@pytest.mark.gl
+def test_timer_queries_report_plausible_times(gpu: Gpu) -> None:
+    assert 0 <= warm_up_timer(gpu.context) < 1e9

@@ -1,0 +1,14 @@
+from fakesss.recent import Recent
+
+
+def test_keeps_the_most_recently_used_and_disposes_of_the_rest() -> None:
+    gone: list[str] = []
+    recent: Recent[str] = Recent(2, dispose=gone.append)
+    recent.get("a", lambda: "A")
+    recent.get("b", lambda: "B")
+    recent.get("a", lambda: "made twice")
+    recent.get("c", lambda: "C")
+    assert gone == ["B"]
+    assert recent.get("a", lambda: "made twice") == "A"
+    recent.clear()
+    assert sorted(gone) == ["A", "B", "C"]
