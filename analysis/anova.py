@@ -20,9 +20,9 @@ ROUNDING = 1e-12  # a residual this small against the total is what float64 leav
 class OneWayAnova:
     """Fixed-effects one-way analysis of variance of independent samples.
 
-    Returns one row: `F, df1, df2, p, ss_between, ss_within, ms_within, eta_squared, ci_low, ci_high` (90% interval of eta
-    squared), `n` (ratings), `k` (levels). Agrees with R `summary(aov(value ~ group))`. Raises `Undefined` with a sentence where F
-    has no value (see `analysis.undefined.groups_of`).
+    Returns one row: `F, df1, df2, p, ss_between, ss_within, ms_within, eta_squared, ci_low, ci_high` (90% interval of
+    eta squared), `n` (ratings), `k` (levels). Agrees with R `summary(aov(value ~ group))`. Raises `Undefined` with a
+    sentence where F has no value (see `analysis.undefined.groups_of`).
     """
 
     value: str
@@ -48,11 +48,11 @@ class OneWayAnova:
 class RepeatedMeasuresAnova:
     """One-way repeated-measures analysis of variance with Greenhouse-Geisser and Huynh-Feldt corrections.
 
-    Returns one row: `F, df1, df2, p` (uncorrected), `ss_effect, ss_subject, ss_error, ms_error, epsilon_gg, p_gg, epsilon_hf, p_hf,
-    mauchly_w, mauchly_p` (NaN for two levels, and where there are no more people than levels: the test has no meaning),
-    `partial_eta_squared, partial_ci_low, partial_ci_high, generalized_eta_squared, ci_low, ci_high` (90% intervals), `n`, `k`,
-    `dropped` (participants without a value at every level, "; " between). Agrees with R
-    `afex::aov_ez(subject, value, within = within)`. Raises `Undefined` where F has no value.
+    Returns one row: `F, df1, df2, p` (uncorrected), `ss_effect, ss_subject, ss_error, ms_error, epsilon_gg, p_gg,
+    epsilon_hf, p_hf, mauchly_w, mauchly_p` (NaN for two levels, and where there are no more people than levels: the
+    test has no meaning), `partial_eta_squared, partial_ci_low, partial_ci_high, generalized_eta_squared, ci_low,
+    ci_high` (90% intervals), `n`, `k`, `dropped` (participants without a value at every level, "; " between). Agrees
+    with R `afex::aov_ez(subject, value, within = within)`. Raises `Undefined` where F has no value.
     """
 
     value: str

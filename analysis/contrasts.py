@@ -15,9 +15,10 @@ from analysis.undefined import complete_table
 class PairedContrasts:
     """Paired t tests between all pairs of levels with Holm's adjustment.
 
-    Returns a row per pair: `a, b, difference` (mean of a less mean of b), `ci_low, ci_high` (unadjusted), `t, df, p, p_holm, d_z`
-    (mean difference over the standard deviation of differences), `n`. A pair whose differences are all equal has NaN for `t, p,
-    p_holm, d_z` and is not counted in the adjustment. Agrees with R `pairwise.t.test(paired = TRUE, p.adjust.method = "holm")`.
+    Returns a row per pair: `a, b, difference` (mean of a less mean of b), `ci_low, ci_high` (unadjusted), `t, df, p,
+    p_holm, d_z` (mean difference over the standard deviation of differences), `n`. A pair whose differences are all
+    equal has NaN for `t, p, p_holm, d_z` and is not counted in the adjustment. Agrees with R `pairwise.t.test(paired =
+    TRUE, p.adjust.method = "holm")`.
     """
 
     value: str

@@ -1,4 +1,4 @@
-"""Plots of mean ratings like the thesis's figures 4.5 and 4.6, with the pictures on the axis and every answer in view."""
+"""Plots of mean ratings like the thesis's figures 4.5 and 4.6: pictures on the axis, every answer in view."""
 
 import base64
 import io
@@ -6,6 +6,7 @@ import re
 from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
+from typing import Any
 
 import matplotlib as mpl
 import numpy as np
@@ -23,7 +24,7 @@ from analysis.study import Question, StudyInfo
 COLOURS = ("#0072B2", "#009E73", "#D55E00", "#CC79A7", "#56B4E9", "#E69F00")
 INK, FAINT = "#1d1d1f", "#8a8f98"
 THUMBNAIL = 112
-STYLE = {
+STYLE: dict[Any, Any] = {
     "font.family": "DejaVu Sans",
     "font.size": 9,
     "axes.spines.top": False,
@@ -51,7 +52,7 @@ class Drawing:
 
     @property
     def inline(self) -> str:
-        """The SVG for one HTML page among others: no prolog, ids that no other figure has, described for screen readers."""
+        """The SVG to stand in a page with others: no prolog, ids no other figure has, a name for screen readers."""
         body = self.svg[self.svg.index("<svg") :]
         body = re.sub(r'(\bid="|url\(#|href="#)', rf"\1{self.stem}-", body)
         return re.sub(r"<svg\b", f'<svg role="img" aria-labelledby="caption-{self.stem}"', body, count=1)
@@ -82,8 +83,8 @@ def factor_figure(study: StudyInfo, found: Sequence[Analysed], confidence: float
                 axes.set_title(each.row.question, fontweight="bold")
             label_scale(axes, study.question(each.row.question), named=column == 0)
         caption = (
-            f"Mean ratings by factor (rows) and question (columns). Bars: {interval_name(mine[0].mode, confidence)}. "
-            "Grey discs: all answers, area by count."
+            f"Mean ratings by factor (rows) and question (columns). {answer_scale(study.question(questions[0]))}"
+            f"Bars: {interval_name(mine[0].mode, confidence)}. Grey discs: all answers, area by their share."
         )
         return drawn(figure, "figure-4-5-factors", caption)
 
@@ -107,8 +108,8 @@ def comparison_figure(study: StudyInfo, found: Sequence[Analysed], confidence: f
         for axes in grid[len(mine) :]:
             axes.remove()
         caption = (
-            f"Mean ratings of the pictures compared. Bars: {interval_name(mine[0].mode, confidence)}. "
-            "Grey discs: all answers, area by count."
+            f"Mean ratings of the pictures compared. {answer_scale(study.question(mine[0].row.question))}"
+            f"Bars: {interval_name(mine[0].mode, confidence)}. Grey discs: all answers, area by their share."
         )
         return drawn(figure, "figure-4-6-comparison", caption)
 
@@ -133,7 +134,7 @@ def draw_means(axes: Axes, each: Analysed, study: StudyInfo, colour: str, joined
         if file is not None and file.is_file():
             place_thumbnail(axes, float(place), file)
         labels.append(level.label if each.row.kind == "factor" else f"{level.code}\n{folded(level.label)}")
-    pad = 36 if any(isinstance(artist, AnnotationBbox) for artist in axes.artists) else 4
+    pad = 42 if any(isinstance(artist, AnnotationBbox) for artist in axes.artists) else 4
     axes.set_xticks(places, labels)
     axes.tick_params(axis="x", length=0, pad=pad)
 
@@ -143,7 +144,7 @@ def draw_answers(axes: Axes, each: Analysed, codes: list[object]) -> None:
     for place, code in enumerate(codes):
         given = each.answers[each.answers["condition"] == code]["rating"].value_counts()
         share = given / given.sum()
-        axes.scatter(np.full(len(share), place), share.index, s=420 * share, color="#c9ced6", linewidths=0, zorder=1)
+        axes.scatter(np.full(len(share), place), share.index, s=800 * share, color="#d6dae0", linewidths=0, zorder=1)
 
 
 def label_scale(axes: Axes, question: Question, named: bool) -> None:
@@ -155,13 +156,18 @@ def label_scale(axes: Axes, question: Question, named: bool) -> None:
     axes.set_axisbelow(True)
     axes.tick_params(axis="y", length=0)
     if named:
-        ends = f"  (1 {question.low} – {question.scale} {question.high})" if question.low and question.high else ""
-        axes.set_ylabel("mean rating" + folded(ends, 44))
+        axes.set_ylabel("mean rating")
+
+
+def answer_scale(question: Question) -> str:
+    """What the ends of the axis mean, for captions."""
+    named = question.low and question.high
+    return f"1 {question.low}, {question.scale} {question.high}. " if named else f"Scale 1 to {question.scale}. "
 
 
 def place_thumbnail(axes: Axes, place: float, file: Path) -> None:
     """The picture itself below its place on the axis."""
-    box = OffsetImage(np.asarray(thumbnail(file)), zoom=32 / THUMBNAIL)
+    box = OffsetImage(np.asarray(thumbnail(file)), zoom=36 / THUMBNAIL)
     axes.add_artist(
         AnnotationBbox(
             box,
@@ -173,7 +179,7 @@ def place_thumbnail(axes: Axes, place: float, file: Path) -> None:
             frameon=False,
             pad=0,
             annotation_clip=False,
-        )  # fmt: skip
+        )
     )
 
 

@@ -13,8 +13,8 @@ from analysis.undefined import Undefined, complete_table
 class Friedman:
     """Friedman's chi-squared (corrected for ties) and Kendall's coefficient of concordance.
 
-    Returns one row: `chi2, df, p, kendalls_w` (0..1), `n, k, dropped`. Agrees with R `friedman.test`. Raises `Undefined` for
-    fewer than three levels, and where everyone gave all levels the same rating.
+    Returns one row: `chi2, df, p, kendalls_w` (0..1), `n, k, dropped`. Agrees with R `friedman.test`. Raises
+    `Undefined` for fewer than three levels, and where everyone gave all levels the same rating.
     """
 
     value: str

@@ -13,9 +13,9 @@ from analysis.undefined import complete_table, require_columns
 class MeanIntervals:
     """The mean of each level with its t interval.
 
-    With `subject`, Cousineau's interval with Morey's correction (2008): differences between people are taken out, and the variance
-    multiplied by k / (k - 1); agrees with R `Rmisc::summarySEwithin`. Without it, the plain interval of each sample.
-    Returns a row per level: `level, mean, ci_low, ci_high, sd, n`. A single value has no interval (NaN).
+    With `subject`, Cousineau's interval with Morey's correction (2008): differences between people are taken out, and
+    the variance multiplied by k / (k - 1); agrees with R `Rmisc::summarySEwithin`. Without it, the plain interval of
+    each sample. Returns a row per level: `level, mean, ci_low, ci_high, sd, n`. A single value has no interval (NaN).
     """
 
     value: str

@@ -15,7 +15,16 @@ from analysis.rows import level_text
 from analysis.sample import Sample
 from analysis.sentences import apa_sentence, findings
 from analysis.study import StudyInfo
-from analysis.tables import Table, table_4_4, table_4_5, table_of_pairs, table_of_retests, table_of_tests
+from analysis.tables import (
+    SHOWN_LEVELS,
+    Table,
+    table_4_4,
+    table_4_5,
+    table_of_pairs,
+    table_of_ranks,
+    table_of_retests,
+    table_of_tests,
+)
 
 TEMPLATES = Environment(
     loader=PackageLoader("analysis"), autoescape=select_autoescape(), undefined=StrictUndefined, trim_blocks=True,
@@ -45,12 +54,13 @@ def render_page(
         findings=findings(study, main, plan),
         thesis_tables=thesis_tables(main, other, plan),
         tests=table_of_tests(main),
+        ranks=table_of_ranks(main),
         agreement=agreement_of_tests(main, plan.alpha),
         pairs=table_of_pairs(main, plan.confidence),
         retests=table_of_retests(retests),
         apa=[apa_sentence(each, plan) for each in main if each.p is not None],
         remarks=said,
-        figures=[(drawing, Markup(drawing.inline)) for drawing in drawings],  # noqa: S704 our own SVG
+        figures=[(drawing, Markup(drawing.inline)) for drawing in drawings],
         pictures=pictures(study),
         origin=origin,
     )
@@ -62,8 +72,13 @@ def thesis_tables(main: Sequence[Analysed], other: Sequence[Analysed], plan: Ana
     for part in (main, other):
         if part:
             tables.append(table_4_4(part, plan))
-            tables += [table_4_5(each) for each in part if each.row.kind != "factor" and each.tukey is not None]
+            tables += [table_4_5(each) for each in part if in_full(each)]
     return tables
+
+
+def in_full(each: Analysed) -> bool:
+    """Whether the comparison's pairs are few enough for a table on the page."""
+    return each.row.kind != "factor" and each.tukey is not None and len(each.row.levels) <= SHOWN_LEVELS
 
 
 def declared_rules(rules: Exclusions) -> list[str]:

@@ -70,8 +70,8 @@ class AnalysisPlan(Strict):
 def check_analysis(study_table: Mapping[str, Any], source: str) -> AnalysisPlan:
     """The plan in a study's `[analysis]` table (defaults where there is none).
 
-    `study_table` is study.toml as read; `source` names it in messages. Raises `BadInput` for an unknown key, a value out of
-    range, or a comparison on a question that the study does not ask.
+    `study_table` is study.toml as read; `source` names it in messages. Raises `BadInput` for an unknown key, a value
+    out of range, or a comparison on a question that the study does not ask.
     """
     table = study_table.get("analysis", {})
     if not isinstance(table, Mapping):

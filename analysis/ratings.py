@@ -38,10 +38,10 @@ def read_ratings(
 ) -> pd.DataFrame:
     """The live ratings in `path`, sorted by participant, stimulus and question (natural order).
 
-    `columns` maps our names to the file's (`{"stimulus": "photo"}`); the aliases in `ALIASES` need no mapping.
-    `scale` is the highest answer, for all questions or for each; None allows any finite number.
-    Returns `participant, stimulus, question` (text), `rating` (float, NaN where the file has an empty cell) and those of
-    `OPTIONAL` that the file has (text; numbers for `rt_ms`). Raises `BadInput` with the line number of the first bad row.
+    `columns` maps our names to the file's (`{"stimulus": "photo"}`); the aliases in `ALIASES` need no mapping. `scale`
+    is the highest answer, for all questions or for each; None allows any finite number. Returns `participant,
+    stimulus, question` (text), `rating` (float, NaN where the file has an empty cell) and those of `OPTIONAL` that the
+    file has (text; numbers for `rt_ms`). Raises `BadInput` with the line number of the first bad row.
     """
     path = Path(path)
     header = read_header(path)

@@ -17,21 +17,9 @@ def remarks(
     """Warnings in the order of their weight. `found`: the default mode's analyses."""
     said = [sentence for each in found for sentence in each.trouble]
     said += design_remarks(study, sample, ratings)
-    for each in found:
-        if each.mode == "repeated" and each.n and each.n[0] <= len(each.row.levels):
-            said.append(
-                f"{each.row.title}: {each.n[0]} participants for {len(each.row.levels)} levels; sphericity cannot be judged."
-            )
-        dropped = str(each.anova.get("dropped", "")) if each.anova is not None else ""
-        if dropped:
-            who = dropped.split("; ")
-            said.append(
-                f"{each.row.title}: {counted(len(who), 'participant')} with a missing cell left out: {joined(who)}."
-            )
+    said += [sentence for each in found for sentence in row_remarks(each)]
     if any(BEST in comparison.stimuli for comparison in plan.comparison):
-        said.append(
-            'The "best" own picture was picked by the same ratings that are then compared: its mean is flattered by the choice.'
-        )
+        said.append('The "best" own picture was picked by the same ratings: the choice flatters its mean.')
     tests = sum(each.p is not None for each in found)
     if tests > 1 and any(each.p is not None and each.p < plan.alpha for each in found):
         said.append(
@@ -40,6 +28,21 @@ def remarks(
         )
     if any(each.row.kind == "comparison" for each in found):
         said.append('"Non significant" between two pictures is not evidence that they are rated alike.')
+    return said
+
+
+def row_remarks(each: Analysed) -> list[str]:
+    """Too few people for the levels, and who was left out of this row alone."""
+    if each.anova is None or each.mode != "repeated":
+        return []
+    said = []
+    if each.n[0] <= len(each.row.levels):
+        people = counted(each.n[0], "participant")
+        said.append(f"{each.row.title}: {people} for {len(each.row.levels)} levels; sphericity cannot be judged.")
+    who = [name for name in str(each.anova["dropped"]).split("; ") if name]
+    if who:
+        people = counted(len(who), "participant")
+        said.append(f"{each.row.title}: {people} with a missing cell left out: {joined(who)}.")
     return said
 
 
@@ -63,7 +66,13 @@ def agreement_of_tests(found: Sequence[Analysed], alpha: float) -> str:
     both = [each for each in found if each.p is not None and each.friedman is not None]
     if not both:
         return ""
-    apart = [each.row.title for each in both if each.friedman and (each.p or 0) < alpha != (each.friedman["p"] < alpha)]
+    apart = [each.row.title for each in both if decides_apart(each, alpha)]
     if not apart:
         return f"Means (ANOVA) and ranks (Friedman) lead to the same decision in all {len(both)} rows."
     return f"Means (ANOVA) and ranks (Friedman) disagree about {joined(apart)}."
+
+
+def decides_apart(each: Analysed, alpha: float) -> bool:
+    """Whether one of the two tests is significant and the other is not."""
+    assert each.p is not None and each.friedman is not None
+    return (each.p < alpha) is not bool(each.friedman["p"] < alpha)

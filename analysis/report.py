@@ -35,13 +35,14 @@ def write_report(
     scale: int = DEFAULT_SCALE,
     progress: Progress | None = None,
 ) -> dict[str, Any]:
-    """Writes index.html, results.json, tables/*.csv and figures/*.svg, *.png into `out`; returns what is in results.json.
+    """Writes index.html, results.json, tables/*.csv and figures/*.svg, *.png into `out`; returns what is in
+    results.json.
 
     `ratings`: long CSV (contract.md's columns, or others named by `columns` or their aliases). `manifest`: the study's
-    manifest.json, for factors, labels, scales and pictures; without it every picture is compared with every other and answers
-    are 1..`scale`. `plan`: overrides the manifest's `[analysis]`. `participants`: CSV of all who started. `progress(done, total,
-    what)` is called before each analysis and at the end. Raises `BadInput` for what a user can mend.
-    Equal input gives equal bytes.
+    manifest.json, for factors, labels, scales and pictures; without it every picture is compared with every other and
+    answers are 1..`scale`. `plan`: overrides the manifest's `[analysis]`. `participants`: CSV of all who started.
+    `progress(done, total, what)` is called before each analysis and at the end. Raises `BadInput` for what a user can
+    mend. Equal input gives equal bytes.
     """
     study = read_manifest(manifest) if manifest is not None else None
     scales = {q.name: q.scale for q in study.questions} if study is not None else scale
@@ -93,18 +94,13 @@ def write_report(
 
 def refuse_strangers(study: StudyInfo, frame: pd.DataFrame, ratings: Path) -> None:
     """Ratings of none of the study's pictures or questions belong to another study."""
-    pictures = {p.id for p in study.pictures}
-    if not pictures & set(frame["stimulus"]):
-        raise BadInput(
-            f'{ratings}: none of its pictures is in the study (it has "{frame["stimulus"].iloc[0]}", the study has '
-            f'"{min(pictures, default="none")}"); are these ratings of another study?'
-        )
-    questions = [q.name for q in study.questions]
-    if not set(questions) & set(frame["question"]):
-        raise BadInput(
-            f'{ratings}: none of its questions is asked by the study (it has "{frame["question"].iloc[0]}", the study asks '
-            f'"{questions[0]}"); are these ratings of another study?'
-        )
+    known = {"stimulus": [p.id for p in study.pictures], "question": [q.name for q in study.questions]}
+    for column, names in known.items():
+        if not set(names) & set(frame[column]):
+            raise BadInput(
+                f'{ratings}: no {column} of it is in the study (it has "{frame[column].iloc[0]}", the study has '
+                f'"{next(iter(names), "none")}"); are these ratings of another study?'
+            )
 
 
 def plain(table: pd.DataFrame) -> list[dict[str, Any]]:

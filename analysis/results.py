@@ -51,7 +51,7 @@ class Analysed:
         """Name, value and 90% interval of the effect size."""
         assert self.anova is not None
         name = "generalized_eta_squared" if self.mode == "repeated" else "eta_squared"
-        return name, *(float(self.anova[key]) for key in (name, "ci_low", "ci_high"))
+        return name, float(self.anova[name]), float(self.anova["ci_low"]), float(self.anova["ci_high"])
 
     @property
     def hsd(self) -> tuple[float, float] | None:

@@ -9,6 +9,7 @@ import pandas as pd
 from analysis.labels import natural_order
 from analysis.plan import BEST, AnalysisPlan, Comparison
 from analysis.study import Factor, Picture, StudyInfo
+from analysis.wording import sentence_case
 from fakesss.problem import nearest
 
 Kind = Literal["factor", "comparison", "all"]
@@ -36,9 +37,7 @@ class Row:
     @property
     def title(self) -> str:
         """As in table 4.4: question vs factor."""
-        return (
-            f"{self.question[:1].upper()}{self.question[1:]} vs {self.name}" if self.kind != "comparison" else self.name
-        )
+        return sentence_case(self.name if self.kind == "comparison" else f"{self.question} vs {self.name}")
 
     def cells(self, ratings: pd.DataFrame) -> pd.DataFrame:
         """`participant, condition` (M1..Mk), `rating`: one row per person and sample, averaged over its pictures."""
@@ -49,17 +48,17 @@ class Row:
 
 
 def rows_of(study: StudyInfo, plan: AnalysisPlan, ratings: pd.DataFrame) -> tuple[list[Row], list[str]]:
-    """Every row in the order factor, question (the thesis's figure 4.5), then comparisons; and what had to be left out."""
+    """Every row by factor and question (as figure 4.5), then comparisons; and sentences on what had to be left out."""
     rated = set(ratings["stimulus"])
     questions = [q.name for q in study.questions if q.name in set(ratings["question"])]
     rows = [row for factor in study.factors for q in questions if (row := factor_row(study, factor, q, rated))]
     notes: list[str] = []
     for comparison in declared(study, plan, questions, rated):
-        row = comparison_row(study, comparison, ratings)
-        if isinstance(row, str):
-            notes.append(row)
+        made = comparison_row(study, comparison, ratings)
+        if isinstance(made, str):
+            notes.append(made)
         else:
-            rows.append(row)
+            rows.append(made)
     if not rows:
         rows = [whole_row(study, q, rated) for q in questions]
     return rows, notes
@@ -67,7 +66,7 @@ def rows_of(study: StudyInfo, plan: AnalysisPlan, ratings: pd.DataFrame) -> tupl
 
 def factor_row(study: StudyInfo, factor: Factor, question: str, rated: set[str]) -> Row | None:
     """The factor's levels in the order of the design; None where fewer than two were rated."""
-    levels = []
+    levels: list[Level] = []
     for value in factor.levels:
         stimuli = tuple(p.id for p in study.pictures if in_row(p, factor, value) and p.id in rated)
         if stimuli:
@@ -108,7 +107,7 @@ def comparison_row(study: StudyInfo, comparison: Comparison, ratings: pd.DataFra
         return f'{where}: nobody answered question "{comparison.question}"; left out'
     rated = {str(name) for name in asked["stimulus"].unique()}
     own = asked[asked["stimulus"].isin([p.id for p in study.pictures if p.role == "factor"])]
-    levels = []
+    levels: list[Level] = []
     for name in comparison.stimuli:
         if name == BEST and own.empty:
             return f'{where}: "best" needs own pictures with ratings; left out'
@@ -124,8 +123,8 @@ def comparison_row(study: StudyInfo, comparison: Comparison, ratings: pd.DataFra
 
 def best_of(own: pd.DataFrame) -> str:
     """The picture with the highest mean; of equals the first in natural order."""
-    means = own.groupby("stimulus")["rating"].mean()
-    return str(next(name for name in natural_order(means.index) if means[name] == means.max()))
+    means = {str(name): part.mean() for name, part in own.groupby("stimulus")["rating"]}
+    return next(str(name) for name in natural_order(means) if means[str(name)] == max(means.values()))
 
 
 def whole_row(study: StudyInfo, question: str, rated: set[str]) -> Row:

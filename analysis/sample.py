@@ -18,7 +18,8 @@ FINISHED_COLUMNS = ("completed_at", "finished_at", "completed", "finished", "sta
 class Sample:
     """The ratings that are analysed, and the account of those that are not.
 
-    `ratings` holds first showings only, without missing answers; `everything` also repeats and checks of the same people.
+    `ratings` holds first showings only, without missing answers; `everything` also repeats and checks of the same
+    people.
     """
 
     ratings: pd.DataFrame
@@ -60,7 +61,7 @@ def draw_sample(ratings: pd.DataFrame, plan: AnalysisPlan, participants: Path | 
         n_completed=len(finished),
         excluded=tuple((who, reasons[who]) for who in map(str, natural_order(reasons))),
         mode=mode,
-        n_missing=int(shown["rating"].isna().sum()),
+        n_missing=int(shown.loc[~shown["participant"].isin(list(reasons)), "rating"].isna().sum()),
     )
 
 

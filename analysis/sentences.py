@@ -1,5 +1,6 @@
 """Findings in words: first for a reader in a hurry, then in the APA's form to paste."""
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import pandas as pd
@@ -7,7 +8,15 @@ import pandas as pd
 from analysis.plan import AnalysisPlan
 from analysis.results import Analysed
 from analysis.study import Question, StudyInfo
-from analysis.wording import apa_df, apa_p, joined, no_zero
+from analysis.wording import apa_df, apa_p, joined, no_zero, sentence_case, signed
+
+
+@dataclass(frozen=True)
+class Effect:
+    """A finding in words, and the statistic behind it."""
+
+    words: str
+    statistic: str
 
 
 @dataclass(frozen=True)
@@ -15,19 +24,20 @@ class Finding:
     """What the ratings of one question say."""
 
     question: Question
-    effects: tuple[str, ...]
+    effects: tuple[Effect, ...]
     nothing: str
 
 
-def findings(study: StudyInfo, found: list[Analysed], plan: AnalysisPlan) -> list[Finding]:
+def findings(study: StudyInfo, found: Sequence[Analysed], plan: AnalysisPlan) -> list[Finding]:
     """For each question which factors matter, in which direction and by how much; then those without a finding."""
     result = []
     for question in study.questions:
         mine = [each for each in found if each.row.question == question.name and each.p is not None]
         matter = [each for each in mine if each.p is not None and each.p < plan.alpha]
+        matter.sort(key=lambda each: (each.row.kind != "factor", -gap(each)))
         rest = [each for each in mine if each not in matter]
         if mine:
-            effects = tuple(effect_sentence(each, question, plan) for each in sorted(matter, key=gap, reverse=True))
+            effects = tuple(Effect(effect_sentence(each, question, plan), apa_statistic(each)) for each in matter)
             result.append(Finding(question, effects, nothing_sentence(rest, plan)))
     return result
 
@@ -52,32 +62,34 @@ def gap(each: Analysed) -> float:
 def effect_sentence(each: Analysed, question: Question, plan: AnalysisPlan) -> str:
     """Direction, the means, and the largest difference with its simultaneous interval."""
     table = ordered_means(each)
-    top, bottom = table.loc[table["mean"].idxmax()], table.loc[table["mean"].idxmin()]
+    top, bottom = table.iloc[int(table["mean"].argmax())], table.iloc[int(table["mean"].argmin())]
     at = [f"{mean:.2f} at {label}" for mean, label in zip(table["mean"], table["label"], strict=True)]
     head = f"{direction(each, table)}: {joined(at)}." if each.row.kind == "factor" else picture_head(each, top, bottom)
     low, high = pair_interval(each, top["level"], bottom["level"])
     what = "steps" if question.scale <= 11 else "points"
     return (
         f"{head} Highest less lowest: {gap(each):.2f} {what} of the {question.scale}-point scale "
-        f"({plan.confidence:.0%} CI {low:.2f} to {high:.2f}), {apa_statistic(each)}."
+        f"({plan.confidence:.0%} CI {signed(low)} to {signed(high)})."
     )
 
 
 def direction(each: Analysed, table: pd.DataFrame) -> str:
-    """ "rises with backlight" where means follow the levels, else "depends on backlight"."""
+    """Rises or falls where the means follow the levels, else depends."""
     name, means = each.row.name, table["mean"]
     numeric = all(isinstance(v, int | float) and not isinstance(v, bool) for v in table["value"])
     if numeric and means.is_monotonic_increasing:
         return f"Rises with {name}"
     if numeric and means.is_monotonic_decreasing:
         return f"Falls with {name}"
-    return f"Depends on {name}, highest at {table.loc[means.idxmax(), 'label']}"
+    return f"Depends on {name}, highest at {table['label'].iloc[int(means.argmax())]}"
 
 
 def picture_head(each: Analysed, top: "pd.Series[float]", bottom: "pd.Series[float]") -> str:
     """Pictures have no direction: the ends are named."""
-    name = f"{each.row.name}: the pictures differ" if each.row.kind == "comparison" else "The pictures differ"
-    return f"{name}, from {bottom['mean']:.2f} ({bottom['label']}) to {top['mean']:.2f} ({top['label']})."
+    where = f"{sentence_case(each.row.name)}: the" if each.row.kind == "comparison" else "The"
+    return (
+        f"{where} pictures differ, from {bottom['mean']:.2f} ({bottom['label']}) to {top['mean']:.2f} ({top['label']})."
+    )
 
 
 def pair_interval(each: Analysed, top: object, bottom: object) -> tuple[float, float]:
@@ -94,11 +106,8 @@ def nothing_sentence(rest: list[Analysed], plan: AnalysisPlan) -> str:
     """Absence of a finding, with what the ratings still allow."""
     if not rest:
         return ""
-    widest = max(
-        max(abs(each.tukey["ci_low"]).max(), abs(each.tukey["ci_high"]).max())
-        for each in rest
-        if each.tukey is not None
-    )
+    tables = [each.tukey for each in rest if each.tukey is not None]
+    widest = max(table[["ci_low", "ci_high"]].abs().to_numpy().max() for table in tables)
     names = joined([each.row.name for each in rest])
     return (
         f"No effect of {names} was found. That is not evidence of none: differences of up to {widest:.2f} remain "
@@ -132,8 +141,8 @@ def apa_sentence(each: Analysed, plan: AnalysisPlan) -> str:
     ]
     where = f" ({each.row.name})" if each.row.kind == "comparison" else ""
     return (
-        f"A {kind}{corrected} with {people(each)} showed {verdict} of {what} on ratings of “{each.row.question}”{where}, "
-        f"{apa_statistic(each)} ({'; '.join(cells)})."
+        f"A {kind}{corrected} with {people(each)} showed {verdict} of {what} on ratings of "
+        f"“{each.row.question}”{where}, {apa_statistic(each)} ({'; '.join(cells)})."
     )
 
 

@@ -8,7 +8,9 @@ from statsmodels.stats.multitest import multipletests
 
 from analysis.plan import AnalysisPlan
 from analysis.results import METHODS, Analysed
-from analysis.wording import apa_df, exact_p, no_zero, thesis_hsd, thesis_p, thesis_verdict
+from analysis.wording import apa_df, exact_p, no_zero, signed, thesis_hsd, thesis_p, thesis_verdict
+
+SHOWN_LEVELS = 8  # more samples make more pairs than a page should hold: those stand in tables/tukey.csv
 
 
 @dataclass(frozen=True)
@@ -45,7 +47,7 @@ def table_4_4(found: Sequence[Analysed], plan: AnalysisPlan) -> Table:
         )
     return Table(
         f"table-4-4-{mode}",
-        f"Results of the one-way ANOVA, {METHODS[mode]} (significance level {plan.alpha:.0%})",
+        f"Table 4.4. Results of the one-way ANOVA, {METHODS[mode]} (significance level {plan.alpha:.0%})",
         ("Configuration", "p-value", "F", "df", "n", "MSE", "p, unrounded"),
         tuple(rows),
         note="p as the thesis's table 4.4 gives it: without correction for sphericity or for the number of tests.",
@@ -82,7 +84,7 @@ def table_4_5(each: Analysed) -> Table:
         note += f" Unrounded HSD {hsd[0]:.4f} and {hsd[1]:.4f} decide."
     return Table(
         f"table-4-5-{each.mode}-{each.row.question}",
-        f"Tukey HSD test of {each.row.name} on “{each.row.question}”, {METHODS[each.mode]} ({heading})",
+        f"Table 4.5. Tukey HSD test of {each.row.name} on “{each.row.question}”, {METHODS[each.mode]} ({heading})",
         ("Samples", "P", "|difference|", "q", "p (Tukey)"),
         tuple(rows),
         text_columns=2,
@@ -91,66 +93,66 @@ def table_4_5(each: Analysed) -> Table:
 
 
 def table_of_tests(found: Sequence[Analysed]) -> Table:
-    """The test that fits the design: corrected for sphericity and for the number of tests, with effect size and ranks."""
+    """The test that fits the design: corrected for sphericity and for the number of tests, with effect size."""
     tested = [each for each in found if each.p is not None]
     holm = multipletests([each.p for each in tested], method="holm")[1] if tested else []
-    repeated = bool(found) and found[0].mode == "repeated"
     rows = [test_cells(each, float(adjusted)) for each, adjusted in zip(tested, holm, strict=True)]
-    columns = (
-        "Configuration",
-        "F",
-        "df",
-        "ε GG",
-        "ε HF",
-        "p",
-        "p Holm",
-        "η²G",
-        "90% CI",
-        "Friedman χ²",
-        "Kendall W",
-        "p ranks",
-    )
-    if not repeated:
-        columns = ("Configuration", "F", "df", "p", "p Holm", "η²", "90% CI")
     note = f"p Holm: adjusted over the {len(tested)} tests of this table."
-    if repeated:
+    head: tuple[str, ...] = ("Configuration", "F", "df", "p", "p Holm", "η²", "90% CI")
+    caption = "One-way ANOVA of independent samples"
+    if found and found[0].mode == "repeated":
+        head = ("Configuration", "F", "df", "ε GG", "ε HF", "p", "p Holm", "η²G", "90% CI")
         note = f"df and p are Greenhouse–Geisser corrected; ε HF for comparison. η²G: generalized eta squared. {note}"
-    caption = "Repeated-measures ANOVA" if repeated else "One-way ANOVA of independent samples"
-    return Table("table-tests", f"{caption}, corrected, with effect sizes", columns, tuple(rows), note=note)
+        caption = "Repeated-measures ANOVA"
+    return Table("table-tests", f"{caption}, corrected, with effect sizes", head, tuple(rows), note=note)
 
 
 def test_cells(each: Analysed, adjusted: float) -> tuple[str, ...]:
     """One line of `table_of_tests`."""
     assert each.anova is not None and each.p is not None
     _, size, low, high = each.effect
-    tail = (no_zero(size, 3), f"[{no_zero(low, 3)}, {no_zero(high, 3)}]")
-    if each.mode == "independent":
-        df = f"{each.anova['df1']:.0f}, {each.anova['df2']:.0f}"
-        return each.row.title, f"{each.anova['F']:.2f}", df, thesis_p(each.p), thesis_p(adjusted), *tail
-    shrink = each.anova["epsilon_gg"]
+    repeated = each.mode == "repeated"
+    shrink = each.anova["epsilon_gg"] if repeated else 1.0
     df = f"{apa_df(each.anova['df1'] * shrink)}, {apa_df(each.anova['df2'] * shrink)}"
-    ranks = ("–", "–", "–")
-    if each.friedman is not None:
-        ranks = (f"{each.friedman['chi2']:.2f}", no_zero(each.friedman["kendalls_w"], 3), thesis_p(each.friedman["p"]))
-    epsilons = (f"{shrink:.3f}", f"{each.anova['epsilon_hf']:.3f}")
-    return each.row.title, f"{each.anova['F']:.2f}", df, *epsilons, thesis_p(each.p), thesis_p(adjusted), *tail, *ranks
+    epsilons = (f"{shrink:.3f}", f"{each.anova['epsilon_hf']:.3f}") if repeated else ()
+    tail = (thesis_p(each.p), thesis_p(adjusted), no_zero(size, 3), f"[{no_zero(low, 3)}, {no_zero(high, 3)}]")
+    return (each.row.title, f"{each.anova['F']:.2f}", df, *epsilons, *tail)
 
 
-def table_of_pairs(found: Iterable[Analysed], confidence: float) -> Table:
-    """Every pair of every row: Tukey's simultaneous intervals, and Holm-adjusted paired t tests where people are the same."""
+def table_of_ranks(found: Sequence[Analysed]) -> Table | None:
+    """Friedman's test beside the analysis of means; None where nobody rated repeatedly."""
+    rows = tuple(
+        (
+            each.row.title,
+            f"{each.friedman['chi2']:.2f}",
+            f"{each.friedman['df']:.0f}",
+            thesis_p(each.friedman["p"]),
+            no_zero(each.friedman["kendalls_w"], 3),
+        )
+        for each in found
+        if each.friedman is not None
+    )
+    head = ("Configuration", "χ²", "df", "p", "Kendall W")
+    return Table("table-ranks", "Friedman's test: ranks instead of means", head, rows) if rows else None
+
+
+def table_of_pairs(found: Iterable[Analysed], confidence: float) -> Table | None:
+    """Every pair of every row: Tukey's simultaneous intervals; paired t tests (Holm) where people are the same."""
     rows = []
     for each in found:
-        if each.tukey is None:
+        if each.tukey is None or len(each.row.levels) > SHOWN_LEVELS:
             continue
         labels = {level.code: level.label for level in each.row.levels}
         holm = each.contrasts.to_dict("records") if each.contrasts is not None else [None] * len(each.tukey)
         for pair, contrast in zip(each.tukey.to_dict("records"), holm, strict=True):
             paired = ("–", "–") if contrast is None or pd.isna(contrast["p_holm"]) else (
-                thesis_p(contrast["p_holm"]), f"{contrast['d_z']:.2f}"
+                thesis_p(contrast["p_holm"]), signed(contrast["d_z"])
             )  # fmt: skip
-            interval = f"[{pair['ci_low']:.2f}, {pair['ci_high']:.2f}]"
-            cells = (f"{pair['difference']:.2f}", interval, thesis_p(pair["p"]), *paired)
+            interval = f"[{signed(pair['ci_low'])}, {signed(pair['ci_high'])}]"
+            cells = (signed(pair["difference"]), interval, thesis_p(pair["p"]), *paired)
             rows.append((each.row.title, f"{labels[pair['a']]} − {labels[pair['b']]}", *cells))
+    if not rows:
+        return None
     return Table(
         "table-pairs",
         "All pairs",

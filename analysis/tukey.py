@@ -18,12 +18,12 @@ P_FLOOR = 1e-10  # scipy's studentized range is accurate to about 1e-14 absolute
 class TukeyHSD:
     """All pairwise differences of means with familywise p values.
 
-    With `subject`, the error term and degrees of freedom are those of the repeated-measures analysis (the thesis's HSD);
-    without it, those of independent samples (Tukey-Kramer where sizes differ).
-    Returns a row per pair: `a, b, difference` (mean of a less mean of b), `q, p` (at least 1e-10: a bound below that),
-    `ci_low, ci_high` (simultaneous, at `confidence`), `critical_05, critical_01` (unrounded smallest significant |difference|),
-    `df, mse`. Agrees with R `TukeyHSD(aov(value ~ group))` without `subject`, and with
-    `ptukey(q, k, df, lower.tail = FALSE)` at the repeated-measures error with it. Raises `Undefined` as the analyses do.
+    With `subject`, the error term and degrees of freedom are those of the repeated-measures analysis (the thesis's
+    HSD); without it, those of independent samples (Tukey-Kramer where sizes differ). Returns a row per pair: `a, b,
+    difference` (mean of a less mean of b), `q, p` (at least 1e-10: a bound below that), `ci_low, ci_high`
+    (simultaneous, at `confidence`), `critical_05, critical_01` (unrounded smallest significant |difference|), `df,
+    mse`. Agrees with R `TukeyHSD(aov(value ~ group))` without `subject`, and with `ptukey(q, k, df, lower.tail =
+    FALSE)` at the repeated-measures error with it. Raises `Undefined` as the analyses do.
     """
 
     value: str

@@ -12,7 +12,7 @@ def thesis_p(p: float) -> str:
 
 def exact_p(p: float) -> str:
     """Six significant digits; below 1e-10 only the bound, as no rating study supports such digits."""
-    return "< 1e-10" if p <= 1e-10 else f"{p:.6g}" if p < 1e-4 else f"{p:.6f}"
+    return "< 1e-10" if p <= 1e-10 else f"{p:.6g}" if p < 1e-3 else f"{p:.6f}"
 
 
 def thesis_hsd(value: float) -> str:
@@ -21,7 +21,7 @@ def thesis_hsd(value: float) -> str:
 
 
 def thesis_verdict(difference: float, critical_05: float, critical_01: float) -> str:
-    """Table 4.5's wording. The unrounded difference meets the unrounded HSD: 1.0000 is below an HSD that prints as "1"."""
+    """Table 4.5's wording, from unrounded values: a difference of 1.0000 is below an HSD of 1.0025 printed "1"."""
     if abs(difference) >= critical_01:
         return "P < .01"
     return "P < .05" if abs(difference) >= critical_05 else "Non significant"
@@ -45,6 +45,17 @@ def apa_df(df: float) -> str:
 def joined(words: list[str]) -> str:
     """a, b and c."""
     return words[0] if len(words) == 1 else f"{', '.join(words[:-1])} and {words[-1]}" if words else ""
+
+
+def signed(value: float, places: int = 2) -> str:
+    """With a true minus sign; never "-0.00"."""
+    text = f"{value:.{places}f}"
+    return text.lstrip("-") if float(text) == 0 else text.replace("-", "−")
+
+
+def sentence_case(text: str) -> str:
+    """The first letter capital, the others as they are."""
+    return text[:1].upper() + text[1:]
 
 
 def counted(n: int, noun: str) -> str:
