@@ -1,0 +1,22 @@
+// Offers the way back to somebody who opens the link a second time. Only an offer: the next person at a shared
+// computer begins anew. Where storage is blocked nothing is lost but the offer.
+const key = "fakesss-session";
+const here = location.pathname;
+const notice = document.getElementById("resume");
+
+try {
+  const earlier = localStorage.getItem(key);
+  if (document.querySelector("[data-done]")) localStorage.removeItem(key);
+  else if (notice && earlier && earlier !== here && (await begun(earlier))) {
+    notice.querySelector("a").href = earlier;
+    notice.hidden = false;
+  }
+  document.querySelector("form")?.addEventListener("submit", () => localStorage.setItem(key, here));
+} catch {
+  // storage is blocked
+}
+
+async function begun(address) {
+  const response = await fetch(address, { headers: { Accept: "application/json" } });
+  return response.ok && !["consent", "done", "withdrawn"].includes((await response.json()).step);
+}
