@@ -13,12 +13,14 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
+from matplotlib.layout_engine import ConstrainedLayoutEngine
 from matplotlib.offsetbox import AnnotationBbox, OffsetImage
 from PIL import Image
 
 from analysis.results import Analysed
 from analysis.sentences import ordered_means
 from analysis.study import Question, StudyInfo
+from analysis.wording import sentence_case
 
 # Okabe & Ito (2008): told apart with every kind of colour vision, and in grey
 COLOURS = ("#0072B2", "#009E73", "#D55E00", "#CC79A7", "#56B4E9", "#E69F00")
@@ -72,7 +74,10 @@ def factor_figure(study: StudyInfo, found: Sequence[Analysed], confidence: float
     if not mine:
         return None
     with mpl.rc_context(STYLE):
-        figure = Figure(figsize=(3.1 * len(questions) + 0.5, 3.0 * len(factors) + 0.3), layout="constrained")
+        figure = Figure(
+            figsize=(3.1 * len(questions) + 0.5, 3.3 * len(factors) + 0.3),
+            layout=ConstrainedLayoutEngine(h_pad=0.12, w_pad=0.06),
+        )
         grid = figure.subplots(len(factors), len(questions), sharey="row", squeeze=False)
         for each in mine:
             row, column = factors.index(each.row.name), questions.index(each.row.question)
@@ -80,7 +85,7 @@ def factor_figure(study: StudyInfo, found: Sequence[Analysed], confidence: float
             draw_means(axes, each, study, COLOURS[row % len(COLOURS)])
             axes.set_xlabel(each.row.name)
             if row == 0:
-                axes.set_title(each.row.question, fontweight="bold")
+                axes.set_title(sentence_case(each.row.question), fontweight="bold")
             label_scale(axes, study.question(each.row.question), named=column == 0)
         caption = (
             f"Mean ratings by factor (rows) and question (columns). {answer_scale(study.question(questions[0]))}"
@@ -99,11 +104,15 @@ def comparison_figure(study: StudyInfo, found: Sequence[Analysed], confidence: f
         width = max(4.2, 0.95 * most + 1.2)
         across = 1 if width > 6 else min(len(mine), 2 if width > 4.5 else 3)
         down = -(-len(mine) // across)
-        figure = Figure(figsize=(min(width, 12) * across, 3.4 * down), layout="constrained")
+        figure = Figure(
+            figsize=(min(width, 12) * across, 3.4 * down), layout=ConstrainedLayoutEngine(h_pad=0.12, w_pad=0.06)
+        )
         grid = figure.subplots(down, across, squeeze=False).ravel()
         for axes, each in zip(grid, mine, strict=False):
             draw_means(axes, each, study, COLOURS[0], joined=False)
-            axes.set_title(each.row.name if each.row.kind == "comparison" else each.row.question, fontweight="bold")
+            axes.set_title(
+                sentence_case(each.row.name if each.row.kind == "comparison" else each.row.question), fontweight="bold"
+            )
             label_scale(axes, study.question(each.row.question), named=True)
         for axes in grid[len(mine) :]:
             axes.remove()
@@ -144,7 +153,15 @@ def draw_answers(axes: Axes, each: Analysed, codes: list[object]) -> None:
     for place, code in enumerate(codes):
         given = each.answers[each.answers["condition"] == code]["rating"].value_counts()
         share = given / given.sum()
-        axes.scatter(np.full(len(share), place), share.index, s=800 * share, color="#d6dae0", linewidths=0, zorder=1)
+        axes.scatter(
+            np.full(len(share), place),
+            share.index,
+            s=800 * share,
+            color="#d6dae0",
+            linewidths=0,
+            zorder=1,
+            clip_on=False,
+        )
 
 
 def label_scale(axes: Axes, question: Question, named: bool) -> None:

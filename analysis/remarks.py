@@ -23,8 +23,8 @@ def remarks(
     tests = sum(each.p is not None for each in found)
     if tests > 1 and any(each.p is not None and each.p < plan.alpha for each in found):
         said.append(
-            f"{tests} tests at the {plan.alpha:.0%} level: about {tests * plan.alpha:.1f} would be significant by chance "
-            "if no picture differed. The Holm column allows for that."
+            f"{tests} tests at the {plan.alpha:.0%} level: if no picture differed, about {tests * plan.alpha:.1f} would be "
+            "significant by chance. The Holm column allows for that."
         )
     if any(each.row.kind == "comparison" for each in found):
         said.append('"Non significant" between two pictures is not evidence that they are rated alike.')

@@ -47,7 +47,7 @@ def write_report(
     study = read_manifest(manifest) if manifest is not None else None
     scales = {q.name: q.scale for q in study.questions} if study is not None else scale
     frame = read_ratings(ratings, columns, scales)
-    study = study or from_ratings(frame, ratings.stem, scale)
+    study = study or from_ratings(frame, f"Ratings in {ratings.name}", scale)
     refuse_strangers(study, frame, ratings)
     plan = plan or study.plan
     sample = draw_sample(frame, plan, participants)

@@ -150,7 +150,8 @@ def table_of_pairs(found: Iterable[Analysed], confidence: float) -> Table | None
             )  # fmt: skip
             interval = f"[{signed(pair['ci_low'])}, {signed(pair['ci_high'])}]"
             cells = (signed(pair["difference"]), interval, thesis_p(pair["p"]), *paired)
-            rows.append((each.row.title, f"{labels[pair['a']]} − {labels[pair['b']]}", *cells))
+            title = each.row.title if pair["a"] + pair["b"] == "M1M2" else ""
+            rows.append((title, f"{labels[pair['a']]} − {labels[pair['b']]}", *cells))
     if not rows:
         return None
     return Table(
@@ -160,14 +161,15 @@ def table_of_pairs(found: Iterable[Analysed], confidence: float) -> Table | None
             "Configuration",
             "Pair",
             "Difference",
-            f"{confidence:.0%} CI (Tukey)",
-            "p (Tukey)",
-            "p (paired t, Holm)",
+            f"{confidence:.0%} CI",
+            "p Tukey",
+            "p Holm",
             "d_z",
         ),
         tuple(rows),
         text_columns=2,
-        note="Tukey's intervals hold together for all pairs of a row. d_z: mean difference over the SD of differences.",
+        note="Intervals and p Tukey hold together for all pairs of a row. p Holm: paired t tests, adjusted within it. "
+        "d_z: mean difference over the standard deviation of differences.",
     )
 
 
