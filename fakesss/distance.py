@@ -2,7 +2,7 @@
 
 A field is a function from (N, 3) float64 points to (N,) distances, negative inside. Distances are right to first order
 near the surface, which is all that the mesher needs; they are not exact far away.
-Forms after Quilez, *Distance functions* (2008-2024): ellipsoid, quadratic Bézier, polynomial smooth minimum.
+Forms after Quilez, *Distance functions* (2008-2024): ellipsoid, polynomial smooth minimum.
 """
 
 from collections.abc import Callable, Sequence
@@ -17,6 +17,8 @@ Floats = NDArray[np.float64]
 Distance = Callable[[Floats], Floats]
 
 FAR = 0.6  # distances beyond this are not told apart; larger than any blend radius
+SAMPLES = 4  # on each piece of a curve, where the search for its nearest point starts
+NEWTON_STEPS = 4
 
 
 def smooth_min(a: Floats, b: Floats, radius: float) -> Floats:
@@ -49,8 +51,8 @@ class Joined:
         for part, radius in self.parts:
             low, high = part.box
             outside = np.maximum(np.maximum(low - points, points - high), 0)
-            # squared, to spare the root: farther than this, the part changes nothing
-            reach = np.maximum(total, 0) + abs(radius) if radius > 0 else np.maximum(-total, 0) + abs(radius)
+            # farther than this, the part changes nothing; half as far again, since distances are first-order only
+            reach = 1.5 * (np.maximum(total if radius > 0 else -total, 0) + abs(radius))
             near = np.flatnonzero((outside**2).sum(axis=1) <= reach**2)
             distance = part.distance(points[near])
             before = total[near]
@@ -87,16 +89,22 @@ class Ellipsoid:
 
 @dataclass(frozen=True)
 class Tube:
-    """A round limb along a smooth curve: (n, 4) control points x, y, z, radius of a quadratic B-spline, n >= 3."""
+    """A round limb along a smooth curve: (n, 4) control points x, y, z, radius of a uniform cubic B-spline, n >= 2.
+
+    The curve runs from the first to the last point. It is cubic because with a jump in curvature, as between
+    quadratic pieces, a limb of varying radius has a visible crease.
+    """
 
     points: Sequence[tuple[float, float, float, float]]
 
     @cached_property
-    def pieces(self) -> list[tuple[Floats, Floats, Floats]]:
+    def pieces(self) -> Floats:
+        """Coefficients (piece, power, component) of the polynomials in 0..1."""
         control = np.array(self.points, float)
-        middle = (control[1:] + control[:-1]) / 2
-        middle[0], middle[-1] = control[0], control[-1]
-        return [bent(middle[i - 1], control[i], middle[i]) for i in range(1, len(control) - 1)]
+        ends = 2 * control[[0, -1]] - control[[1, -2]]
+        control = np.concatenate([ends[:1], control, ends[1:]])
+        basis = np.array([[1, 4, 1, 0], [-3, 0, 3, 0], [3, -6, 3, 0], [-1, 3, -3, 1]]) / 6
+        return np.stack([np.einsum("ij,jk->ik", basis, control[i : i + 4]) for i in range(len(control) - 3)])
 
     @cached_property
     def box(self) -> tuple[Floats, Floats]:
@@ -104,51 +112,37 @@ class Tube:
         return (control[:, :3] - control[:, 3:]).min(axis=0), (control[:, :3] + control[:, 3:]).max(axis=0)
 
     def distance(self, points: Floats) -> Floats:
-        nearest = np.full(len(points), np.inf)
-        for a, b, c in self.pieces:
-            np.minimum(nearest, bezier_distance(points, a, b, c), out=nearest)
-        return nearest
+        place = self.nearest_sample(points)
+        for _ in range(NEWTON_STEPS):
+            curve, speed, bend = self.at(place)
+            away = curve[:, :3] - points
+            speed_squared = (speed[:, :3] ** 2).sum(axis=1)
+            # far from the curve the second derivative of the squared distance may vanish
+            slope = np.maximum(speed_squared + (away * bend[:, :3]).sum(axis=1), 0.25 * speed_squared)
+            step = (away * speed[:, :3]).sum(axis=1) / slope
+            place = np.clip(place - np.clip(step, -0.5, 0.5), 0, len(self.pieces))
+        curve, _, _ = self.at(place)
+        distance: Floats = np.sqrt(((curve[:, :3] - points) ** 2).sum(axis=1)) - curve[:, 3]
+        return distance
 
+    def nearest_sample(self, points: Floats) -> Floats:
+        """The curve parameter (N,) of the nearest of a few points on the curve."""
+        samples = (np.arange(SAMPLES * len(self.pieces)) + 0.5) / SAMPLES
+        least, place = np.full(len(points), np.inf), np.zeros(len(points))
+        x, y, z = np.ascontiguousarray(points.T)
+        for parameter, (cx, cy, cz, _) in zip(samples, self.at(samples)[0], strict=True):
+            squared = (x - cx) ** 2 + (y - cy) ** 2 + (z - cz) ** 2
+            nearer = squared < least
+            np.copyto(least, squared, where=nearer)
+            np.copyto(place, parameter, where=nearer)
+        return place
 
-def bent(a: Floats, b: Floats, c: Floats) -> tuple[Floats, Floats, Floats]:
-    """A quadratic piece nudged off a straight line, on which the cubic of `bezier_distance` has no solution."""
-    curvature = a[:3] - 2 * b[:3] + c[:3]
-    length = np.sqrt(((c - a)[:3] ** 2).sum())
-    if np.sqrt((curvature**2).sum()) > 1e-2 * length:
-        return a, b, c
-    direction = (c - a)[:3]
-    aside = np.cross(direction, np.eye(3)[np.argmin(np.abs(direction))])
-    nudged = b.copy()
-    nudged[:3] += 1e-2 * aside / np.sqrt((aside**2).sum()) * length
-    return a, nudged, c
-
-
-def bezier_distance(points: Floats, a: Floats, b: Floats, c: Floats) -> Floats:
-    """Distance to a quadratic Bézier curve less its radius there; a, b, c are x, y, z, radius."""
-    side, bend, offset = (b - a)[:3], (a - 2 * b + c)[:3], a[:3] - points
-    scale = 1 / (bend @ bend)
-    kx = scale * (side @ bend)
-    ky = scale * (2 * (side @ side) + offset @ bend) / 3
-    kz = scale * (offset @ side)
-    p, q = ky - kx * kx, kx * (2 * kx * kx - 3 * ky) + kz
-    discriminant = q * q + 4 * p**3
-    root = np.sqrt(np.maximum(discriminant, 0))
-    single = np.cbrt((root - q) / 2) + np.cbrt((-root - q) / 2) - kx
-    z = np.sqrt(np.maximum(-p, 1e-30))
-    angle = np.arccos(np.clip(-q / (2 * z**3), -1, 1)) / 3
-    cosine, sine = np.cos(angle), np.sin(angle) * np.sqrt(3)
-    three = discriminant < 0
-    first = np.where(three, 2 * cosine * z - kx, single)
-    second = np.where(three, (-sine - cosine) * z - kx, single)
-    return np.minimum(*(to_curve(offset, side, bend, a, b, c, np.clip(t, 0, 1)) for t in (first, second)))
-
-
-def to_curve(offset: Floats, side: Floats, bend: Floats, a: Floats, b: Floats, c: Floats, t: Floats) -> Floats:
-    """Distance from the points behind `offset` to the surface of the tube's ball at curve parameter `t`."""
-    away = offset + (2 * t)[:, None] * side + (t * t)[:, None] * bend
-    radius = a[3] + 2 * t * (b - a)[3] + t * t * (a - 2 * b + c)[3]
-    distance: Floats = np.sqrt((away**2).sum(axis=1)) - radius
-    return distance
+    def at(self, place: Floats) -> tuple[Floats, Floats, Floats]:
+        """The curve (N, 4) and its first two derivatives at parameters (N,) in 0..number of pieces."""
+        piece = np.minimum(place.astype(int), len(self.pieces) - 1)
+        u = (place - piece)[:, None]
+        a, b, c, d = (self.pieces[piece, power] for power in range(4))
+        return a + u * (b + u * (c + u * d)), b + u * (2 * c + 3 * u * d), 2 * c + 6 * u * d
 
 
 @dataclass(frozen=True)

@@ -33,4 +33,5 @@ class Caster:
     def blocked(self, origins: Floats32, directions: Floats32) -> NDArray[np.bool_]:
         """Whether each ray hits anything."""
         found: NDArray[np.int32] = self._scene.run(origins, directions, query="OCCLUDED")
-        return found != NOTHING
+        blocked: NDArray[np.bool_] = found != NOTHING
+        return blocked

@@ -7,16 +7,21 @@ surfaces, and none needs a download.
 from collections.abc import Callable
 from pathlib import Path
 
-from fakesss import cache, figure, solids
+from fakesss import cache, shape_figure, shape_hand, shape_head, shape_relief, shape_shell, solids
 from fakesss.mesh import EXTENSIONS, Mesh, load_mesh, mesh_from_surface
 from fakesss.problem import BadInput, nearest
 
 DEFAULT_FACES = 60_000
 FACES = (1_000, 1_000_000)  # fewest and most triangles that a built-in object is made with
-VERSION = 2  # raised whenever a built-in object changes, so that cached ones are made again
+VERSION = 3  # raised whenever a built-in object changes, so that cached ones are made again
 
 BUILT_IN: dict[str, Callable[[int], solids.Surface]] = {
-    "figure": figure.figure,
+    "figure": shape_figure.figure,
+    "head": shape_head.head,
+    "hand": shape_hand.hand,
+    "knot": solids.knot,
+    "shell": shape_shell.shell,
+    "relief": shape_relief.relief,
     "sphere": solids.sphere,
     "box": solids.box,
     "torus": solids.torus,

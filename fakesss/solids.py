@@ -79,6 +79,20 @@ def torus(faces: int) -> Surface:
     return ring * middle + tube * outward, outward, grid(along, across, closed=True)
 
 
+def knot(faces: int) -> Surface:
+    """A trefoil, its tube swelling from thin to thick and back; seen along the axis of its threefold symmetry."""
+
+    def curve(u: Floats) -> Floats:
+        x, y = (np.sin(u) + 2 * np.sin(2 * u), np.cos(u) - 2 * np.cos(2 * u))
+        return np.stack([x, y, -1.1 * np.sin(3 * u)], axis=1)
+
+    def radius(u: Floats) -> Floats:
+        radii: Floats = 0.47 - 0.27 * np.cos(u - 0.9) - 0.09 * np.cos(2 * u)
+        return radii
+
+    return swept(curve, radius, faces)
+
+
 def angles(along: int, across: int) -> tuple[Floats, Floats]:
     """Angle along a ring and around its tube (radians) for the vertices of a closed `grid`."""
     u, v = np.meshgrid(*(2 * np.pi * np.arange(n) / n for n in (along, across)), indexing="ij")
