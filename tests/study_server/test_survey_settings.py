@@ -1,0 +1,40 @@
+"""What study.toml may say about the survey, and the sentence when it says something else."""
+
+import pytest
+
+from fakesss.problem import BadInput
+from study_server.settings import check_survey
+
+QUESTION = {"name": "translucent", "text": "The object looks translucent."}
+
+
+def test_the_survey_table_may_be_missing() -> None:
+    settings = check_survey({"title": "T", "design": {}, "question": [QUESTION]}, "study.toml")
+    assert (settings.question[0].scale, settings.question[0].low) == (7, "completely disagree")
+    assert [field.name for field in settings.survey.about] == ["age", "background", "vision"]
+    assert settings.survey.order == "latin-square"
+
+
+@pytest.mark.parametrize(
+    ("tables", "sentence"),
+    [
+        ({"survey": {"consnt": "x"}}, 'study.toml: survey.consnt: unknown key; did you mean "consent"?'),
+        ({"question": [{**QUESTION, "scael": 5}]}, 'study.toml: question[1].scael: unknown key; did you mean "scale"?'),
+        ({"question": [{**QUESTION, "scale": 12}]}, "study.toml: question[1].scale: 12: must be <= 11"),
+        ({"question": [QUESTION, QUESTION]}, 'two question entries are named "translucent"'),
+        ({"question": [{"name": "a"}]}, "study.toml: question[1].text: is missing; add it"),
+        ({"survey": {"order": "latin"}}, "study.toml: survey.order: 'latin': must be"),
+        ({"survey": {"about": [{"name": "a", "text": "?", "choces": []}]}}, 'survey.about[1].choces: unknown key; did'),
+        ({"survey": {"release_after_minutes": float("nan")}}, "survey.release_after_minutes"),
+    ],
+)
+def test_errors_name_the_key_and_the_mend(tables: dict[str, object], sentence: str) -> None:
+    with pytest.raises(BadInput) as problem:
+        check_survey({"question": [QUESTION], **tables}, "study.toml")
+    assert sentence in str(problem.value)
+    assert "\n" not in str(problem.value)
+
+
+def test_a_study_without_questions_is_refused() -> None:
+    with pytest.raises(BadInput, match="study.toml: question: is missing"):
+        check_survey({}, "study.toml")
