@@ -42,6 +42,7 @@ class View:
         distance = camera.distance if camera.distance is not None else 1 / math.sin(half)
         near = camera.near if camera.near is not None else max(distance - 1 - SPHERE_MARGIN, NEAREST)
         far = camera.far if camera.far is not None else max(distance + 1 + SPHERE_MARGIN, 2 * near)
+        near = near if near < far else far / 2
         towards = direction(camera.azimuth, camera.elevation)
         right = direction(camera.azimuth + 90, 0)
         rotation = np.array([right, np.cross(towards, right), towards])
@@ -50,9 +51,15 @@ class View:
         return cls(rotation, distance, near, far, tangent)
 
     @property
-    def pose(self) -> tuple[bytes, float]:
+    def pose(self) -> bytes:
         """Equal poses put a mesh at equal eye coordinates."""
-        return self.rotation.tobytes(), self.distance
+        return self.rotation.tobytes()
+
+    @property
+    def projection(self) -> dict[str, Any]:
+        """The uniforms of `glsl/common_projection.glsl`."""
+        room = (self.distance - self.near, self.far - self.distance)
+        return {"tangent": self.tangent, "clip": (self.near, self.far), "room": room, "distance": self.distance}
 
     @property
     def clips_sphere(self) -> bool:
@@ -60,9 +67,8 @@ class View:
         return self.near > self.distance - 1
 
     def to_eye(self, points: NDArray[Any]) -> NDArray[np.float32]:
-        """World points (N, 3) as (x right, y up, depth) in float32, computed in float64."""
-        eye = self.turn(points)
-        return np.column_stack([eye[:, 0], eye[:, 1], self.distance - eye[:, 2]]).astype(np.float32)
+        """World points (N, 3) as (x right, y up, depth beyond the sphere's centre) in float32, computed in float64."""
+        return (self.turn(points) * (1, 1, -1)).astype(np.float32)
 
     def turn(self, vectors: NDArray[Any]) -> Float:
         """World vectors (N, 3) in the eye frame, float64. Summed by hand: BLAS may order the sum by thread count."""

@@ -6,7 +6,7 @@ it, so a cycle cannot be written down. Declaring and compiling need no GPU.
 """
 
 from collections.abc import Callable, Hashable, Iterable, Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import Any
 
 
@@ -26,7 +26,8 @@ class TextureSpec:
 class Pass:
     """One node that draws: `draw(frame)` fills the textures named in `writes` and sees only what it declared.
 
-    `unread` tells, for inputs that this pass could read but this scene does not call for, the reason in words.
+    `unread` tells, for inputs that this pass could read but this scene does not call for, the reason in words;
+    `only_for` names the output without which an input is not needed.
     Textures are cleared to 0 before `draw`; with `depth_test` an emptied depth buffer is attached.
     """
 
@@ -35,6 +36,7 @@ class Pass:
     writes: Mapping[str, TextureSpec]
     reads: tuple[str, ...] = ()
     unread: Mapping[str, str] = field(default_factory=dict)
+    only_for: Mapping[str, str] = field(default_factory=dict)
     depth_test: bool = False
 
 
@@ -116,33 +118,27 @@ class FrameGraph:
         for target in targets:
             if target not in self.writer:
                 raise FrameGraphError(f'target "{target}" is written by no pass; there are {", ".join(self.writer)}')
+        nodes: list[Node] = []
         wanted = set(targets)
-        for node in reversed(self.nodes):
+        for declared in reversed(self.nodes):
+            node = without_idle_inputs(declared, wanted)
+            nodes.insert(0, node)
             if wanted.intersection(node.writes):
                 wanted.update(node.reads)
-        kept = [node for node in self.nodes if wanted.intersection(node.writes)]
+        kept = [node for node in nodes if wanted.intersection(node.writes)]
         last_use = {resource: node.name for node in kept for resource in (*node.writes, *node.reads)}
         dead_after = {
             node.name: tuple(r for r, last in last_use.items() if last == node.name and r not in targets)
             for node in kept
         }
-        verdicts = tuple(self._verdict(node, kept, targets) for node in self.nodes)
-        return Plan(verdicts, targets, dead_after)
-
-    def _verdict(self, node: Node, kept: list[Node], targets: tuple[str, ...]) -> Verdict:
-        asked = [f"{resource} is asked for" for resource in node.writes if resource in targets]
-        if node in kept:
-            return Verdict(node, True, "; ".join(asked) or f"read by {in_words(readers_of(node, kept))}")
-        reasons = [
-            f"not read by {other.name}: {why}"
-            for other in kept
-            for resource, why in other.unread.items()
-            if resource in node.writes
+        culled = [node for node in nodes if node not in kept]
+        verdicts = [
+            Verdict(node, True, why_kept(node, kept, targets))
+            if node in kept
+            else Verdict(node, False, why_culled(node, kept, culled))
+            for node in nodes
         ]
-        if culled := readers_of(node, [other for other in self.nodes if other not in kept]):
-            are = "which is culled" if len(culled) == 1 else "which are culled"
-            reasons.append(f"read only by {in_words(culled)}, {are}")
-        return Verdict(node, False, "; ".join(dict.fromkeys(reasons)) or "nothing that is asked for reads it")
+        return Plan(tuple(verdicts), targets, dead_after)
 
     def to_dot(self, plan: Plan | None = None) -> str:
         """Graphviz source: passes as boxes, baked inputs as houses, resources as edges; what is culled is dashed."""
@@ -157,6 +153,32 @@ class FrameGraph:
                 source = self.writer[resource].name
                 lines.append(f'  "{source}" -> "{node.name}" [label="{resource}" style={alive}]')
         return "\n".join([*lines, "}\n"])
+
+
+def without_idle_inputs(node: Node, wanted: set[str]) -> Node:
+    """`node` reading only what serves a wanted output."""
+    if isinstance(node, Bake):
+        return node
+    idle = {name: f"{output} is not wanted" for name, output in node.only_for.items() if output not in wanted}
+    reads = tuple(name for name in node.reads if name not in idle)
+    return replace(node, reads=reads, unread={**idle, **node.unread})
+
+
+def why_kept(node: Node, kept: list[Node], targets: tuple[str, ...]) -> str:
+    asked = [f"{resource} is asked for" for resource in node.writes if resource in targets]
+    return "; ".join(asked) or f"read by {in_words(readers_of(node, kept))}"
+
+
+def why_culled(node: Node, kept: list[Node], culled: list[Node]) -> str:
+    reasons = [
+        f"not read by {other.name}: {why}"
+        for other in kept
+        for resource, why in other.unread.items()
+        if resource in node.writes
+    ]
+    if readers := readers_of(node, culled):
+        reasons.append(f"read only by {in_words(readers)}, which {'are' if len(readers) > 1 else 'is'} culled")
+    return "; ".join(dict.fromkeys(reasons)) or "nothing that is asked for reads it"
 
 
 def readers_of(node: Node, others: Iterable[Node]) -> list[str]:

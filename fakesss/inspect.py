@@ -5,7 +5,6 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from fakesss.camera import View
 from fakesss.colour import decode_srgb, to_8bit
 from fakesss.contact_sheet import Panel, layered
 from fakesss.frame import Made
@@ -87,12 +86,11 @@ def contact_sheet(scene: Scene) -> Float:
     renderer = shared_renderer()
     layers = renderer.data(scene.replace(WITH_OCCLUSION), VIEWS)
     covered = layers["front"] > 0
-    near = View.of(scene.camera, scene.size).distance - 1
     glow = renderer.render(scene.replace(ONLY_BACKLIGHT)).image
     normals = np.where(covered[..., None], layers["surface"][..., :3] * 0.5 + 0.5, 0.0)
     panels = [
-        Panel("front layer", layers["front"] - near, covered, "depth into the sphere, radii", "cividis_r"),
-        Panel("second layer", layers["second"] - near, layers["second"] > 0, "same", "cividis_r"),
+        Panel("front layer", layers["front"] - 1, covered, "depth into the sphere, radii", "cividis_r"),
+        Panel("second layer", layers["second"] - 1, layers["second"] > 0, "same", "cividis_r"),
         Panel("thickness", layers["thickness"], covered, "sphere diameters", "magma_r"),
         Panel("softened thickness", layers["blurred_thickness"], covered, "what the light sees", "magma_r"),
         Panel("normals", to_8bit(decode_srgb(normals)), covered, "right, up, to the viewer"),

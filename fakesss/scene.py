@@ -12,12 +12,15 @@ from collections.abc import Iterator, Mapping
 from pathlib import Path
 from typing import Annotated, Any, Literal, Self
 
-from pydantic import BaseModel, Field
+from pydantic import BaseModel, Field, model_validator
 
 from fakesss.problem import BadInput, Strict, nearest, validated
 
 Unit = Annotated[float, Field(ge=0, le=1)]
-NonNegative = Annotated[float, Field(ge=0)]
+LARGEST = 1e6  # of any weight or intensity: products of four stay far within float32
+Weight = Annotated[float, Field(ge=-LARGEST, le=LARGEST)]
+NonNegative = Annotated[float, Field(ge=0, le=LARGEST)]
+Radii = Annotated[float, Field(gt=0, le=1e4)]
 Albedo = tuple[Unit, Unit, Unit]
 Intensity = tuple[NonNegative, NonNegative, NonNegative]
 Pixels = Annotated[int, Field(ge=1, le=16384)]
@@ -33,10 +36,10 @@ class Material(Strict):
     thickness_exponent: Annotated[float, Field(ge=0, le=1e5)] = Field(
         25.0, description="fall-off of the backlight with thickness [r], no unit"
     )
-    backlight: float = Field(1.2, description="backlight contribution [wb], no unit")
-    diffuse_weight: float = Field(0.2, description="added to every channel of the backlight's colour [Kb]")
-    diffuse_contribution: float = Field(0.35, description="weight of the diffuse term [wd], no unit")
-    specular_contribution: float = Field(1.0, description="weight of the specular term [ws], no unit")
+    backlight: Weight = Field(1.2, description="backlight contribution [wb], no unit")
+    diffuse_weight: Weight = Field(0.2, description="added to every channel of the backlight's colour [Kb]")
+    diffuse_contribution: Weight = Field(0.35, description="weight of the diffuse term [wd], no unit")
+    specular_contribution: Weight = Field(1.0, description="weight of the specular term [ws], no unit")
 
 
 class Light(Strict):
@@ -57,15 +60,21 @@ class Camera(Strict):
     field_of_view: Annotated[float, Field(ge=1, le=170)] = Field(
         30.0, description="angle of the shorter side of the picture, degrees"
     )
-    distance: Annotated[float, Field(gt=0)] | None = Field(
+    distance: Radii | None = Field(
         None, description="from the sphere's centre, in sphere radii; empty: the sphere just fills the shorter side"
     )
-    near: Annotated[float, Field(gt=0)] | None = Field(
+    near: Radii | None = Field(
         None, description="near clip distance in sphere radii; empty: fitted to the sphere (eq. 3.4)"
     )
-    far: Annotated[float, Field(gt=0)] | None = Field(
+    far: Radii | None = Field(
         None, description="far clip distance in sphere radii; empty: fitted to the sphere (eq. 3.4)"
     )
+
+    @model_validator(mode="after")
+    def clip_planes_in_order(self) -> Self:
+        if self.near is not None and self.far is not None and self.near >= self.far:
+            raise ValueError(f"near {self.near} must be less than far {self.far}")
+        return self
 
 
 class Occlusion(Strict):

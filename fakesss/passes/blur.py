@@ -16,7 +16,7 @@ def blur(scene: Scene, view: View, size: tuple[int, int]) -> Pass:
     uniforms = {
         "tap": (PUBLISHED_STEP, PUBLISHED_STEP) if published else view.in_picture(2 * scene.blur.step),
         "depth_range": PUBLISHED_RANGE if published else 2 * scene.blur.depth_range,
-        **({"clip": (view.near, view.far)} if published else {}),
+        **({"clip": (view.near, view.far), "distance": view.distance} if published else {}),
     }
 
     def draw(frame: Frame) -> None:

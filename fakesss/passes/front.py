@@ -10,13 +10,11 @@ from fakesss.scene import Scene
 
 
 def front(scene: Scene, view: View, size: tuple[int, int]) -> Pass:
-    """Writes `front` (depth, sphere radii) and `surface` (unit normal in the eye frame, occlusion)."""
+    """Writes `front` (depth, see common_layers.glsl) and `surface` (unit normal in the eye frame, occlusion)."""
     lacking = no_occlusion_because(scene)
 
     def draw(frame: Frame) -> None:
-        program = frame.program(
-            "front.vert", "front.frag", {"tangent": view.tangent, "clip": (view.near, view.far)}, {}
-        )
+        program = frame.program("front.vert", "front.frag", view.projection, {})
         draw_mesh(frame, view, program, [normals(frame, view), occlusion(frame, scene)])
 
     return Pass(
@@ -24,6 +22,7 @@ def front(scene: Scene, view: View, size: tuple[int, int]) -> Pass:
         draw,
         reads=("mesh",) if lacking else ("mesh", "occlusion"),
         unread={"occlusion": lacking} if lacking else {},
+        only_for={"occlusion": "surface"},
         writes={"front": TextureSpec(size, 1), "surface": TextureSpec(size, 4)},
         depth_test=True,
     )

@@ -27,7 +27,7 @@ def draw_mesh(frame: Frame, view: View, program: Any, attributes: list[Attribute
 def normals(frame: Frame, view: View) -> Attribute:
     """Vertex normals in the eye frame."""
     mesh: Mesh = frame.inputs["mesh"]
-    key = ("normals", mesh.sha256, view.rotation.tobytes())
+    key = ("normals", mesh.sha256, view.pose)
     return upload(frame, key, lambda: view.turn(mesh.normals).astype(np.float32)), "3f", "in_normal"
 
 

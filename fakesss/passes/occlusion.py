@@ -14,7 +14,7 @@ def occlusion(scene: Scene) -> Bake:
     def make(inputs: Mapping[str, Any]) -> Any:
         from fakesss.occlusion import bake_occlusion  # loads Embree, which a scene without ambient light never needs
 
-        return bake_occlusion(inputs["mesh"], rays, sampling).values
+        return bake_occlusion(inputs["mesh"], rays, sampling)
 
     return Bake(
         "occlusion",

@@ -8,12 +8,11 @@ from fakesss.scene import Scene
 
 
 def second(scene: Scene, view: View, size: tuple[int, int]) -> Pass:
-    """Reads `mesh` and `front`; writes `second` (depth, sphere radii; 0 where there is no second layer)."""
+    """Reads `mesh` and `front`; writes `second` (depth, see common_layers.glsl; 0 where there is none)."""
     published = int(scene.style == "as published")
 
     def draw(frame: Frame) -> None:
-        uniforms = {"tangent": view.tangent, "clip": (view.near, view.far)}
-        program = frame.program("second.vert", "second.frag", uniforms, {"AS_PUBLISHED": published})
+        program = frame.program("second.vert", "second.frag", view.projection, {"AS_PUBLISHED": published})
         draw_mesh(frame, view, program, [])
 
     return Pass("second", draw, reads=("mesh", "front"), writes={"second": TextureSpec(size, 1)}, depth_test=True)

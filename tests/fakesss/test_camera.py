@@ -18,7 +18,7 @@ def test_the_eye_frame_is_a_rotation_that_looks_at_the_centre(azimuth: float, el
     np.testing.assert_allclose(view.rotation @ view.rotation.T, np.eye(3), atol=1e-12)
     assert np.linalg.det(view.rotation) == pytest.approx(1)
     standing = 3 * direction(azimuth, elevation)
-    np.testing.assert_allclose(view.to_eye(np.array([standing, [0, 0, 0]])), [[0, 0, 0], [0, 0, 3]], atol=1e-6)
+    np.testing.assert_allclose(view.to_eye(np.array([standing, [0, 0, 0]])), [[0, 0, -3], [0, 0, 0]], atol=1e-6)
     assert view.rotation[0, 1] == pytest.approx(0)  # right stays level: the horizon is level at the poles too
 
 

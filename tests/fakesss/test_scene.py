@@ -1,0 +1,62 @@
+from pathlib import Path
+
+import pytest
+import tomli_w
+
+from fakesss.problem import BadInput
+from fakesss.scene import Scene, check_path, scene_paths
+
+
+def test_a_scene_survives_toml(tmp_path: Path) -> None:
+    scene = Scene(object="knot", size=(640, 480)).replace({"material.backlight": 0.8})
+    path = tmp_path / "scene.toml"
+    path.write_text(tomli_w.dumps(scene.model_dump(exclude_none=True)))
+    assert Scene.load(path) == scene
+    assert Scene.load(path).sha256() == scene.sha256() != Scene().sha256()
+
+
+def test_a_mesh_is_found_beside_its_scene(tmp_path: Path) -> None:
+    (tmp_path / "bunny.ply").write_text("ply")
+    (tmp_path / "scene.toml").write_text('object = "bunny.ply"')
+    assert Scene.load(tmp_path / "scene.toml").object == str(tmp_path / "bunny.ply")
+
+
+@pytest.mark.parametrize(
+    ("text", "sentence"),
+    [
+        ("[material]\nbacklihgt = 1", 'material.backlihgt: unknown key; did you mean "backlight"?'),
+        ("[material]\nthickness_exponent = -3", "material.thickness_exponent: -3: must be >= 0"),
+        ("size = [0, 512]", "size[1]: 0: must be >= 1"),
+        ("[camera]\nfield_of_view = 200", "camera.field_of_view: 200: must be <= 170"),
+        ("[camera]\nnear = 3\nfar = 2", "camera: near 3.0 must be < far 2.0"),
+        ("[material]\nbacklight = nan", "material.backlight: nan: must be a finite number"),
+        ("[material", "not valid TOML"),
+    ],
+)
+def test_what_is_wrong_is_named(tmp_path: Path, text: str, sentence: str) -> None:
+    path = tmp_path / "scene.toml"
+    path.write_text(text)
+    with pytest.raises(BadInput) as raised:
+        Scene.load(path)
+    assert str(raised.value).startswith(f"{path}: ") and sentence in str(raised.value)
+    assert "\n" not in str(raised.value)
+
+
+def test_an_unknown_path_gets_its_nearest() -> None:
+    with pytest.raises(BadInput, match=r'did you mean "material.backlight"\?'):
+        check_path("material.backlite", "study.toml")
+    assert check_path("blur.step", "study.toml") == "blur.step"
+
+
+def test_every_path_can_be_replaced_by_its_own_value() -> None:
+    scene = Scene()
+    for path in scene_paths():
+        value = scene.model_dump()
+        for part in path.split("."):
+            value = value[part]
+        assert scene.replace({path: value}) == scene
+
+
+def test_a_level_out_of_range_names_the_source() -> None:
+    with pytest.raises(BadInput, match=r'^study\.toml: factor "t": material\.thickness_exponent: -1'):
+        Scene().replace({"material.thickness_exponent": -1}, 'study.toml: factor "t"')

@@ -1,0 +1,97 @@
+"""Rendered thickness against closed forms, and against rays cast through the same triangles."""
+
+from collections.abc import Callable
+from pathlib import Path
+
+import numpy as np
+import pytest
+import trimesh
+from numpy.typing import NDArray
+
+from fakesss import reference
+from fakesss.camera import View
+from fakesss.mesh import load_mesh
+from fakesss.renderer import Renderer
+from fakesss.scene import Scene
+from fakesss.shapes import load_object
+
+Floats = NDArray[np.float64]
+SIZE = (512, 512)
+JUMP = 0.1  # sphere diameters between neighbours: the edge of something inside the outline
+CAMERA = {"camera.azimuth": 25.0, "camera.elevation": 20.0}
+
+
+def rays(view: View) -> tuple[Floats, Floats]:
+    """World-frame origins and unit directions (H * W, 3) through the pixels' centres, top row first."""
+    width, height = SIZE
+    x = ((np.arange(width) + 0.5) / width * 2 - 1) * view.tangent[0]
+    y = (1 - (np.arange(height) + 0.5) / height * 2) * view.tangent[1]
+    eye = np.stack([*np.meshgrid(x, y), np.full((height, width), -1.0)], axis=-1).reshape(-1, 3)
+    directions = eye @ view.rotation
+    directions /= np.linalg.norm(directions, axis=1, keepdims=True)
+    return np.tile(view.distance * view.rotation[2], (len(eye), 1)), directions
+
+
+def exact_thickness(view: View, interval: Callable[[Floats, Floats], reference.Interval]) -> Floats:
+    """(H, W) in sphere diameters, NaN where the ray misses."""
+    origins, directions = rays(view)
+    t = reference.thickness(interval(origins, directions), directions, -view.rotation[2])
+    return t.reshape(SIZE[1], SIZE[0])
+
+
+def off_silhouettes(t: Floats) -> NDArray[np.bool_]:
+    """Pixels whose eight neighbours all hit, with no jump of thickness to any of them."""
+    padded = np.pad(t, 1, constant_values=np.nan)
+    height, width = t.shape
+    around = [padded[y : y + height, x : x + width] for y in range(3) for x in range(3)]
+    with np.errstate(invalid="ignore"):
+        return np.all([np.abs(neighbour - t) < JUMP for neighbour in around], axis=0)
+
+
+def shell_file(folder: Path) -> str:
+    mesh = reference.spherical_shell(240_000)
+    path = folder / "shell.ply"
+    trimesh.Trimesh(mesh.positions, mesh.faces, process=False).export(path)
+    return str(path)
+
+
+# Bounds on the maximum and the 99.9th percentile of the error, in sphere diameters. Against rays through the same
+# triangles only float32 and the rasteriser's 1/256 pixel grid remain; against the closed form also the triangles'
+# distance from the solid they approximate, which the box does not have.
+ROUNDING = (1e-5, 2e-6)
+TRIANGLES = (6e-4, 4e-4)
+SOLIDS = [
+    ("sphere:240000", reference.sphere_interval, TRIANGLES),
+    ("box:60000", reference.box_interval, ROUNDING),
+    ("torus:240000", reference.torus_interval, TRIANGLES),
+    ("shell", reference.shell_interval, TRIANGLES),
+]
+
+
+@pytest.mark.gl
+@pytest.mark.parametrize(("name", "interval", "bounds"), SOLIDS, ids=[solid[0] for solid in SOLIDS])
+def test_thickness_of_solids(  # type: ignore[no-untyped-def]
+    renderer: Renderer, tmp_path, record_property, name, interval, bounds
+) -> None:
+    name = shell_file(tmp_path) if name == "shell" else name
+    scene = Scene(object=name, size=SIZE).replace(CAMERA)
+    view = View.of(scene.camera, scene.size)
+    drawn = renderer.data(scene, ("thickness",))["thickness"]
+    mesh = load_mesh(name) if name.endswith(".ply") else load_object(name)
+    truths = [("closed form", interval, bounds), ("ray casting", reference.ExactInterval(mesh), ROUNDING)]
+    for against, truth, (worst, most) in truths:
+        exact = exact_thickness(view, truth)
+        error = np.abs(drawn - exact)[off_silhouettes(exact)]
+        p999 = float(np.percentile(error, 99.9))
+        record_property(against, f"max {error.max():.1e}, 99.9% {p999:.1e}, pixels {error.size}")
+        print(f"{Path(name).name} against {against}: max {error.max():.2e} 99.9% {p999:.2e} pixels {error.size}")
+        assert error.size > 10_000
+        assert error.max() < worst and p999 < most
+    assert drawn.dtype == np.float32 and drawn.shape == SIZE[::-1]
+    assert np.isfinite(drawn).all() and (drawn[np.isnan(exact) & ~near(exact)] == 0).all()
+
+
+def near(t: Floats) -> NDArray[np.bool_]:
+    """Pixels at most one away from the object."""
+    hit = np.pad(~np.isnan(t), 1)
+    return np.any([hit[y : y + t.shape[0], x : x + t.shape[1]] for y in range(3) for x in range(3)], axis=0)
