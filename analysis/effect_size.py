@@ -1,5 +1,7 @@
 """Confidence intervals of variance-explained effect sizes from the noncentral F distribution."""
 
+import math
+
 from scipy.optimize import brentq
 from scipy.stats import ncf
 
@@ -23,11 +25,13 @@ def noncentrality(observed: float, df1: float, df2: float, quantile: float) -> f
     """The noncentrality at which `observed` is the `quantile` of F; 0 where even the central F lies above it."""
 
     def excess(nc: float) -> float:
-        return float(ncf.cdf(observed, df1, df2, nc)) - quantile
+        below = float(ncf.cdf(observed, df1, df2, nc))
+        # scipy answers NaN far above the observed value, where the probability underflows
+        return (0.0 if math.isnan(below) and nc > observed * df1 else below) - quantile
 
     if observed <= 0 or excess(0.0) <= 0:
         return 0.0
-    upper = max(10.0, 4 * observed * df1)
+    upper = max(10.0, observed * df1)
     while excess(upper) > 0:
-        upper *= 2
+        upper *= 1.5
     return float(brentq(excess, 0.0, upper, xtol=1e-12, rtol=1e-12))

@@ -31,12 +31,13 @@ ALIASES = {
     "rating": ("rating", "response", "score", "answer"),
 }
 DEFAULT_SCALE = 7
+SIMULATED = "simulated"
 
 
 def read_ratings(
     path: str | Path, columns: Mapping[str, str] | None = None, scale: int | Mapping[str, int] | None = DEFAULT_SCALE
 ) -> pd.DataFrame:
-    """The live ratings in `path`, sorted by participant, stimulus and question (natural order).
+    """The live (else the simulated) ratings in `path`, sorted by participant, stimulus and question (natural order).
 
     `columns` maps our names to the file's (`{"stimulus": "photo"}`); the aliases in `ALIASES` need no mapping. `scale`
     is the highest answer, for all questions or for each; None allows any finite number. Returns `participant,
@@ -51,7 +52,7 @@ def read_ratings(
     if frame.empty:
         raise BadInput(f"{path}: has a header but no ratings; export again after people have answered")
     refuse_empty_labels(frame, path)
-    frame = only_live(frame, path)
+    frame = of_one_mode(frame, path)
     frame["rating"] = numeric_ratings(frame, scale, path)
     if "rt_ms" in frame:
         frame["rt_ms"] = pd.to_numeric(frame["rt_ms"], errors="coerce")
@@ -107,11 +108,13 @@ def refuse_empty_labels(frame: pd.DataFrame, path: Path) -> None:
             raise BadInput(f"{path}: line {empty[0] + 2}: {name} is empty; fill it in or delete the line")
 
 
-def only_live(frame: pd.DataFrame, path: Path) -> pd.DataFrame:
-    """Pilot answers are never analysed with live ones."""
+def of_one_mode(frame: pd.DataFrame, path: Path) -> pd.DataFrame:
+    """The live answers; simulated ones only where there is no live one; pilot answers never."""
     if "mode" not in frame:
         return frame
     live = frame[frame["mode"].isin(["live", ""])]
+    if live.empty:
+        live = frame[frame["mode"] == SIMULATED]
     if live.empty:
         raise BadInput(
             f"{path}: every rating is from a pilot; collect live ratings, or drop the column mode to analyse these"

@@ -5,6 +5,7 @@ from collections.abc import Sequence
 import pandas as pd
 
 from analysis.plan import BEST, AnalysisPlan
+from analysis.ratings import SIMULATED
 from analysis.results import Analysed
 from analysis.sample import Sample
 from analysis.study import StudyInfo
@@ -16,19 +17,27 @@ def remarks(
 ) -> list[str]:
     """Warnings in the order of their weight. `found`: the default mode's analyses."""
     said = [sentence for each in found for sentence in each.trouble]
+    if is_simulated(ratings):
+        said.insert(0, "These answers are simulated: programs gave them, not people.")
     said += design_remarks(study, sample, ratings)
     said += [sentence for each in found for sentence in row_remarks(each)]
     if any(BEST in comparison.stimuli for comparison in plan.comparison):
         said.append('The "best" own picture was picked by the same ratings: the choice flatters its mean.')
-    tests = sum(each.p is not None for each in found)
-    if tests > 1 and any(each.p is not None and each.p < plan.alpha for each in found):
+    tested = [each.p for each in found if each.p is not None]
+    if len(tested) > 1 and min(tested) < plan.alpha:
+        chance = len(tested) * plan.alpha
         said.append(
-            f"{tests} tests at the {plan.alpha:.0%} level: if no picture differed, about {tests * plan.alpha:.1f} would be "
+            f"{len(tested)} tests at the {plan.alpha:.0%} level: if no picture differed, about {chance:.1f} would be "
             "significant by chance. The Holm column allows for that."
         )
     if any(each.row.kind == "comparison" for each in found):
         said.append('"Non significant" between two pictures is not evidence that they are rated alike.')
     return said
+
+
+def is_simulated(ratings: pd.DataFrame) -> bool:
+    """Whether the ratings come from `fakesss simulate`."""
+    return "mode" in ratings and bool((ratings["mode"] == SIMULATED).all())
 
 
 def row_remarks(each: Analysed) -> list[str]:

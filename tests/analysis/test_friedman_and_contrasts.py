@@ -1,0 +1,74 @@
+"""Friedman's test, paired contrasts, intervals and effect sizes against published and R's values."""
+
+import json
+from pathlib import Path
+
+import numpy as np
+import pandas as pd
+import pytest
+from scipy import stats
+
+from analysis import Friedman, MeanIntervals, PairedContrasts
+from analysis.effect_size import eta_squared_interval
+
+DATA = Path(__file__).parents[1] / "data" / "statistics"
+R = json.loads((DATA / "effectsize_tost_padjust_R.json").read_text())
+ROUNDING = pd.read_csv(DATA / "RoundingTimes.csv")
+COLUMNS = {"value": "value", "within": "condition", "subject": "subject"}
+
+
+def test_friedman_rounding_times() -> None:
+    """Hollander & Wolfe (1973), p. 140: chi-squared 11.143, p .0038."""
+    row = Friedman(**COLUMNS)(ROUNDING).iloc[0]
+    assert row["chi2"] == pytest.approx(11.14286, abs=5e-6)
+    assert row["p"] == pytest.approx(0.0038050, abs=5e-8)
+    assert row["kendalls_w"] == pytest.approx(11.14286 / (22 * 2), rel=1e-5)
+
+
+def test_contrasts_are_paired_t_tests_with_holm() -> None:
+    """t, interval and d_z of each pair; Holm's p as multiplied by hand."""
+    table = PairedContrasts(**COLUMNS)(ROUNDING)
+    wide = ROUNDING.pivot(index="subject", columns="condition", values="value")
+    for row in table.to_dict("records"):
+        found = stats.ttest_rel(wide[row["a"]], wide[row["b"]])
+        interval = found.confidence_interval(0.95)
+        assert (row["t"], row["p"]) == pytest.approx((found.statistic, found.pvalue))
+        assert (row["ci_low"], row["ci_high"]) == pytest.approx((interval.low, interval.high))
+        assert row["d_z"] == pytest.approx(found.statistic / np.sqrt(22))
+    smallest, middle, largest = table.sort_values("p")["p"]
+    assert sorted(table["p_holm"]) == pytest.approx([3 * smallest, 2 * middle, max(2 * middle, largest)])
+
+
+def test_equal_differences_have_no_t() -> None:
+    """Everyone differs by the same amount: no p for that pair, and Holm counts the other two."""
+    values = {"a": [1.0, 2, 3, 4], "b": [2.0, 3, 4, 5], "c": [7.0, 2, 5, 4]}
+    cells = [(i, name, value) for name, column in values.items() for i, value in enumerate(column)]
+    frame = pd.DataFrame(cells, columns=["subject", "condition", "value"])
+    table = PairedContrasts(**COLUMNS)(frame).set_index(["a", "b"])
+    assert np.isnan(table.loc[("a", "b"), "p_holm"]) and table.loc[("a", "b"), "ci_low"] == -1
+    assert table["p_holm"].notna().sum() == 2
+
+
+@pytest.mark.parametrize("case", R["eta2"])
+def test_intervals_of_partial_eta_squared(case: dict[str, float]) -> None:
+    """R effectsize::F_to_eta2, 90%: to the accuracy of its optimiser."""
+    interval = eta_squared_interval(case["eta2p"], case["df1"], case["df2"])
+    assert interval == pytest.approx(case["eta2p_ci90"], abs=5e-8)
+
+
+def test_cousineau_morey_for_two_conditions_is_the_paired_interval_over_root_two() -> None:
+    """With k = 2 the corrected half-width is that of the mean difference divided by the square root of 2."""
+    frame = ROUNDING[ROUNDING["condition"] != "Wide Angle"]
+    table = MeanIntervals("value", "condition", "subject")(frame)
+    wide = frame.pivot(index="subject", columns="condition", values="value")
+    difference = wide.iloc[:, 0] - wide.iloc[:, 1]
+    half = stats.t.ppf(0.975, 21) * difference.std() / np.sqrt(22)
+    assert list(table["ci_high"] - table["mean"]) == pytest.approx([half / np.sqrt(2)] * 2)
+
+
+def test_plain_intervals() -> None:
+    """Without a subject: each sample's own t interval."""
+    table = MeanIntervals("value", "condition")(ROUNDING).set_index("level")
+    part = ROUNDING[ROUNDING["condition"] == "Round Out"]["value"]
+    low, high = stats.t.interval(0.95, 21, part.mean(), stats.sem(part))
+    assert tuple(table.loc["Round Out", ["ci_low", "ci_high"]]) == pytest.approx((low, high))
