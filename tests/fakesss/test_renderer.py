@@ -1,0 +1,335 @@
+"""Pictures: every lighting term against its closed form, and what must not change them."""
+
+import subprocess
+import sys
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+import trimesh
+from numpy.typing import NDArray
+from scipy.ndimage import binary_erosion
+
+from fakesss import brdf, render
+from fakesss.camera import View, direction
+from fakesss.colour import decode_srgb, to_8bit
+from fakesss.image_io import encode_png, read_picture
+from fakesss.problem import BadInput
+from fakesss.renderer import Renderer, render_file
+from fakesss.scene import Scene
+
+pytestmark = pytest.mark.gl
+
+DARK = {
+    "light.ambient": (0, 0, 0),
+    "light.diffuse": (0, 0, 0),
+    "light.specular": (0, 0, 0),
+    "material.backlight": 0.0,
+    "supersampling": 1,
+    "background": (0, 0, 0),
+    "exposure": 1.0,
+    "size": (96, 96),
+    "object": "sphere:20000",
+}
+
+
+def dark(**changes: Any) -> Scene:
+    """A sphere without any light, and then `changes` with __ for the dot."""
+    return Scene().replace({**DARK, **{path.replace("__", "."): value for path, value in changes.items()}})
+
+
+def sheet_file(folder: Path) -> str:
+    """An open square facing +z, wound counter-clockwise."""
+    path = folder / "sheet.ply"
+    corners = [[-1, -1, 0], [1, -1, 0], [1, 1, 0], [-1, 1, 0]]
+    trimesh.Trimesh(corners, [[0, 1, 2], [0, 2, 3]], process=False).export(path)
+    return str(path)
+
+
+def test_white_furnace_of_the_ambient_term(renderer: Renderer) -> None:
+    """White under unit ambient light, nothing hidden: radiance 1 at every covered pixel."""
+    scene = dark(light__ambient=(1, 1, 1), material__diffuse=(1, 1, 1), occlusion__enabled=False)
+    image = renderer.render(scene).image
+    covered = image[..., 3] == 1
+    np.testing.assert_allclose(image[covered][:, :3], 1, rtol=1e-6)
+    np.testing.assert_array_equal(image[~covered], 0)
+
+
+def test_occlusion_scales_the_ambient_term(renderer: Renderer) -> None:
+    scene = dark(light__ambient=(1, 2, 3), material__diffuse=(0.5, 0.5, 0.5), object="torus:8000")
+    surface = renderer.data(scene, ("surface",))["surface"]
+    expected = surface[..., 3:] * np.array([0.5, 1.0, 1.5])
+    image = renderer.render(scene).image
+    np.testing.assert_allclose(image[..., :3], np.where(image[..., 3:] > 0, expected, 0), rtol=1e-5)
+    assert surface[..., 3][image[..., 3] > 0].min() < 0.9
+
+
+def cosines(scene: Scene, surface: NDArray[Any]) -> tuple[NDArray[Any], NDArray[Any]]:
+    """N.L and N.H per pixel, from the drawn normals, in float64."""
+    view = View.of(scene.camera, scene.size)
+    width, height = scene.size
+    x = ((np.arange(width) + 0.5) / width * 2 - 1) * view.tangent[0]
+    y = (1 - (np.arange(height) + 0.5) / height * 2) * view.tangent[1]
+    to_viewer = np.stack([*np.meshgrid(-x, -y), np.ones((height, width))], axis=-1)
+    to_viewer /= np.linalg.norm(to_viewer, axis=-1, keepdims=True)
+    to_light = view.rotation @ direction(scene.light.azimuth, scene.light.elevation)
+    halfway = to_viewer + to_light
+    halfway /= np.linalg.norm(halfway, axis=-1, keepdims=True)
+    normal = surface[..., :3].astype(np.float64)
+    return normal @ to_light, (normal * halfway).sum(axis=-1)
+
+
+@pytest.mark.parametrize(
+    "changes",
+    [
+        {"light__diffuse": (1.0, 0.5, 0.25)},
+        {"light__specular": (1.0, 0.5, 0.25), "material__shininess": 40.0},
+        {"light__specular": (1.0, 1.0, 1.0), "material__shininess": 0.0},
+        {"material__backlight": 1.2, "material__thickness_exponent": 5.0},
+        {"material__backlight": 1.2, "blur__enabled": False},
+        {"light__diffuse": (2.0, 2.0, 2.0), "light__ambient": (1, 1, 1), "material__backlight": -0.3},
+    ],
+    ids=["diffuse", "specular", "specular exponent 0", "backlight", "backlight, exact layer", "several"],
+)
+@pytest.mark.parametrize("light", [(-35.0, 50.0), (180.0, 0.0), (0.0, -90.0)])
+def test_picture_is_equation_3_6(renderer: Renderer, changes: dict[str, Any], light: tuple[float, float]) -> None:
+    scene = dark(**changes, light__azimuth=light[0], light__elevation=light[1], object="torus:8000")
+    layer = "blurred_thickness" if scene.blur.enabled else "thickness"
+    data = renderer.data(scene, ("surface", layer, "front"))
+    n_dot_l, n_dot_h = cosines(scene, data["surface"])
+    expected = brdf.lighting(scene.material, scene.light, data["surface"][..., 3], n_dot_l, n_dot_h, data[layer])
+    image = renderer.render(scene).image
+    sure = (data["front"] > 0) & (np.abs(n_dot_l) > 1e-6)  # at N.L = 0 the highlight's edge may round either way
+    np.testing.assert_allclose(image[sure][:, :3], expected[sure], rtol=3e-5, atol=1e-6)
+
+
+def test_normals_of_a_sphere_are_its_directions(renderer: Renderer) -> None:
+    scene = dark(object="sphere:60000")
+    data = renderer.data(scene, ("surface", "front"))
+    covered = data["front"] > 0
+    normals = data["surface"][covered][:, :3]
+    np.testing.assert_allclose(np.linalg.norm(normals, axis=1), 1, atol=1e-6)
+    depth = 2 - data["front"][covered]
+    np.testing.assert_allclose(normals[:, 2], depth, atol=2e-3)
+
+
+CULLED = [
+    ({"material.backlight": 0.0}, {"material.backlight": 1e-30}, "blur"),
+    ({"material.ambient": 0.0}, {"material.ambient": 1e-30}, "occlusion"),
+    ({"light.ambient": (0, 0, 0)}, {"light.ambient": (1e-30, 0, 0)}, "occlusion"),
+]
+
+
+@pytest.mark.parametrize(("without", "forced", "node"), CULLED, ids=[str(case[0]) for case in CULLED])
+def test_culling_changes_no_byte(renderer: Renderer, without: Any, forced: Any, node: str) -> None:
+    scene = Scene(object="torus:8000", size=(128, 128))
+    culled, kept = renderer.render(scene.replace(without)), renderer.render(scene.replace(forced))
+    ran = [{*(p["name"] for p in drawn.passes), *drawn.baked} for drawn in (culled, kept)]
+    assert node not in ran[0] and node in ran[1]
+    assert culled.image.tobytes() == kept.image.tobytes()
+
+
+def test_a_picture_is_the_same_bytes_every_time_and_in_a_new_process(renderer: Renderer) -> None:
+    code = """
+import hashlib, fakesss
+scene = fakesss.Scene(object="figure:8000", size=(317, 211))
+print(hashlib.sha256(fakesss.render(scene).tobytes()).hexdigest())
+"""
+    import hashlib
+
+    scene = Scene(object="figure:8000", size=(317, 211))
+    first = renderer.render(scene).image.tobytes()
+    renderer.render(Scene(object="torus:8000", size=(64, 32)))
+    assert renderer.render(scene).image.tobytes() == first
+    elsewhere = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
+    assert elsewhere.stdout.strip() == hashlib.sha256(first).hexdigest()
+
+
+def averaged(image: NDArray[Any]) -> NDArray[Any]:
+    """Every 2 x 2 pixels as one."""
+    height, width = image.shape[:2]
+    return image.reshape(height // 2, 2, width // 2, 2, 4).mean(axis=(1, 3))
+
+
+@pytest.mark.parametrize(("samples", "mean", "most"), [((2, 1), 1e-6, 1e-5), ((1, 1), 2e-3, 5e-2)])
+def test_resolution_does_not_change_the_picture(
+    renderer: Renderer, samples: tuple[int, int], mean: float, most: float
+) -> None:
+    """512 against 1024 averaged: to rounding where both take the same samples, to sampling error where not."""
+    scene = Scene(object="figure:8000").replace({"material.specular_contribution": 0.0})
+    small = renderer.render(scene.replace({"size": (512, 512), "supersampling": samples[0]})).image
+    large = averaged(renderer.render(scene.replace({"size": (1024, 1024), "supersampling": samples[1]})).image)
+    inside = (small[..., 3] == 1) & (large[..., 3] == 1)
+    difference = np.abs(small - large)[inside][:, :3]
+    assert difference.mean() < mean
+    assert np.percentile(difference, 99) < most
+
+
+@pytest.mark.parametrize("size", [(1, 1), (1, 64), (64, 1), (317, 211), (33, 97)])
+@pytest.mark.parametrize("style", ["default", "as published"])
+def test_odd_sizes(renderer: Renderer, size: tuple[int, int], style: str) -> None:
+    drawn = renderer.render(Scene(object="torus:4000", size=size, style=style))  # type: ignore[arg-type]
+    assert drawn.image.shape == (size[1], size[0], 4) and drawn.image.dtype == np.float32
+    assert drawn.non_finite == 0
+
+
+EXTREMES: list[dict[str, Any]] = [
+    {"camera.distance": 1e-3},
+    {"camera.distance": 1.0},
+    {"camera.distance": 1e4, "camera.field_of_view": 1.0},
+    {"camera.field_of_view": 170.0},
+    {"camera.elevation": 90.0},
+    {"camera.near": 3.9},
+    {"camera.far": 0.5},
+    {"material.thickness_exponent": 0.0},
+    {"material.thickness_exponent": 1e-3},
+    {"material.thickness_exponent": 1e4},
+    {"material.shininess": 0.0},
+    {"material.shininess": 1e5},
+    {"material.backlight": -1e6},
+    {"material.backlight": 1e6, "material.diffuse_weight": 1e6, "exposure": 1e6},
+    {"light.elevation": -90.0, "camera.elevation": 90.0},
+    {"blur.step": 0.25, "blur.depth_range": 1e-9},
+    {"blur.step": 1e-9, "blur.depth_range": 1.0},
+]
+
+
+@pytest.mark.parametrize("changes", EXTREMES, ids=str)
+@pytest.mark.parametrize("style", ["default", "as published"])
+def test_every_pixel_is_finite(renderer: Renderer, changes: dict[str, Any], style: str) -> None:
+    scene = Scene(object="torus:4000", size=(48, 40)).replace({**changes, "style": style})
+    assert renderer.render(scene).non_finite == 0
+
+
+def test_thickness_does_not_depend_on_the_cameras_distance(renderer: Renderer) -> None:
+    """Far cameras see the same lengths: the layers are measured from the sphere's centre."""
+    scene = dark(object="sphere:60000", size=(1, 1), camera__field_of_view=1.0)
+    straight_through = [
+        float(renderer.data(scene.replace({"camera.distance": distance}), ("thickness",))["thickness"][0, 0])
+        for distance in (2.0, 100.0, 1e4)
+    ]
+    assert straight_through[0] == pytest.approx(1, abs=1e-3)
+    assert straight_through == pytest.approx([straight_through[0]] * 3, abs=1e-4)
+
+
+@pytest.mark.parametrize(("policy", "expected"), [("thin", 0.0), ("thick", 1.0)])
+@pytest.mark.parametrize("layer", ["thickness", "blurred_thickness"])
+@pytest.mark.parametrize("azimuth", [0.0, 180.0])
+def test_an_open_sheet_follows_the_stated_policy(
+    renderer: Renderer, tmp_path: Path, policy: str, expected: float, layer: str, azimuth: float
+) -> None:
+    scene = Scene(object=sheet_file(tmp_path), size=(40, 40), open_surface=policy)  # type: ignore[arg-type]
+    data = renderer.data(scene.replace({"camera.azimuth": azimuth}), (layer, "front", "surface"))
+    covered = data["front"] > 0
+    assert covered.any()
+    np.testing.assert_array_equal(data[layer], np.where(covered, expected, 0))
+    assert (data["surface"][covered][:, 2] > 0.9).all()  # its back shows with the normal towards the viewer
+
+
+def test_a_closed_surface_has_no_open_pixels(renderer: Renderer) -> None:
+    """Where it is thinner than the peel can part, "thick" must not put dark specks on the outline."""
+    scene = dark(object="sphere:60000", size=(200, 200))
+    thin, thick = (renderer.data(scene.replace({"open_surface": p}), ("thickness",)) for p in ("thin", "thick"))
+    np.testing.assert_array_equal(thin["thickness"], thick["thickness"])
+
+
+def test_blur_softens_the_second_layer_and_nothing_else(renderer: Renderer) -> None:
+    """The edges of a box's far side are hard in the exact layer; the outline is left out, where taps are dropped."""
+    scene = dark(object="box:4000", size=(256, 256), camera__azimuth=30.0, camera__elevation=25.0)
+    data = renderer.data(scene, ("thickness", "blurred_thickness", "front"))
+    exact, soft = data["thickness"], data["blurred_thickness"]
+    covered = data["front"] > 0
+    assert ((soft > 0) <= covered).all()
+    inside = binary_erosion(covered, iterations=8)
+    far_side = [data["front"] + 2 * layer for layer in (exact, soft)]
+    bend = [np.abs(np.diff(layer, 2, axis=1))[inside[:, 1:-1]].max() for layer in far_side]
+    assert bend[1] < 0.5 * bend[0]
+    assert np.abs(exact - soft)[inside].max() < 0.01
+
+
+def test_background_shows_where_nothing_covers(renderer: Renderer) -> None:
+    scene = Scene(object="torus:8000", size=(64, 64), background=(0.2, 0.4, 0.6))
+    image = renderer.render(scene).image
+    alone = renderer.render(scene.replace({"background": (0, 0, 0)})).image
+    expected = alone[..., :3] + (1 - alone[..., 3:]) * np.array([0.2, 0.4, 0.6])
+    np.testing.assert_allclose(image[..., :3], expected, atol=1e-6)
+    partly = (image[..., 3] > 0) & (image[..., 3] < 1)
+    assert partly.any()
+
+
+def test_top_row_comes_first(renderer: Renderer) -> None:
+    scene = dark(light__diffuse=(1, 1, 1), light__azimuth=0.0, light__elevation=90.0, camera__elevation=0.0)
+    image = renderer.render(scene).image
+    assert image[:48].sum() > 10 * image[48:].sum() - image[..., 3].sum() * 5
+    assert image[24, 48, 0] > image[72, 48, 0]
+
+
+def test_as_published_is_shown_without_encoding(renderer: Renderer) -> None:
+    scene = Scene(object="torus:8000", size=(64, 64), style="as published").replace({"material.backlight": 1.6})
+    raw = np.clip(renderer.data(scene, ("shaded",))["shaded"][..., :3], 0, 1)
+    image = renderer.render(scene).image
+    covered = image[..., 3] == 1
+    np.testing.assert_allclose(image[covered][:, :3], decode_srgb(raw)[covered], rtol=1e-4, atol=1e-6)
+    assert np.abs(to_8bit(image[..., :3]).astype(int) - np.floor(raw * 255 + 0.5))[covered].max() <= 1
+    assert set(np.unique(image[..., 3])) == {0.0, 1.0}
+
+
+@pytest.mark.parametrize("target", ["thickness", "front", "second", "blurred_thickness"])
+def test_layers_are_values_for_every_pixel(renderer: Renderer, target: str) -> None:
+    layer = render(Scene(object="torus:8000", size=(317, 211)), target=target)
+    assert layer.shape == (211, 317) and layer.dtype == np.float32
+    assert np.isfinite(layer).all() and layer[0, 0] == 0 and layer.max() > 0
+
+
+def test_an_unknown_target_is_one_sentence(renderer: Renderer) -> None:
+    with pytest.raises(BadInput, match=r'render: target "thicknes" is written by no pass; there are mesh, occlusion'):
+        render(Scene(object="sphere:4000"), target="thicknes")
+
+
+def test_a_picture_too_large_for_opengl_is_one_sentence(renderer: Renderer) -> None:
+    with pytest.raises(BadInput, match=r"scene: size 16384x1 with supersampling 8 needs 131072 samples in a row"):
+        renderer.render(Scene(object="sphere:4000", size=(16384, 1), supersampling=8))
+
+
+def test_a_sweep_uploads_and_bakes_once(renderer: Renderer) -> None:
+    scene = Scene(object="torus:4000", size=(32, 32))
+    renderer.render(scene)
+    held = len(renderer.gpu.uploads.values), len(renderer.gpu.programs.compiled)
+    for level in np.linspace(0.1, 2, 9):
+        drawn = renderer.render(scene.replace({"material.backlight": float(level)}))
+        assert all(made.cached for made in drawn.baked.values())
+    assert (len(renderer.gpu.uploads.values), len(renderer.gpu.programs.compiled)) == held
+
+
+def test_warnings_tell_what_clips_and_what_is_missing(renderer: Renderer) -> None:
+    scene = Scene(object="torus:4000", size=(32, 32))
+    (clipped,) = renderer.render(scene.replace({"exposure": 100.0})).warnings
+    assert clipped.endswith("of the object's pixels are brighter than the display's white and clip.")
+    (empty,) = renderer.render(scene.replace({"camera.near": 50.0, "camera.far": 60.0})).warnings
+    assert empty.startswith("No pixel shows the object")
+
+
+def test_repairs_are_among_the_warnings(renderer: Renderer, tmp_path: Path) -> None:
+    drawn = renderer.render(Scene(object=sheet_file(tmp_path), size=(16, 16)))
+    assert any("open" in warning for warning in drawn.warnings)
+
+
+@pytest.mark.parametrize("name", ["picture.png", "picture.exr"])
+def test_render_file_writes_and_tells(renderer: Renderer, tmp_path: Path, name: str) -> None:
+    scene = Scene(object="torus:4000", size=(31, 21))
+    told = render_file(scene, tmp_path / name)
+    assert set(told) == {
+        *("image", "width", "height", "gl_renderer", "passes"),
+        *("non_finite", "warnings", "scene_sha256"),
+    }
+    assert (told["width"], told["height"], told["non_finite"]) == (31, 21, 0)
+    assert all(entry["gpu_ms"] >= 0 for entry in told["passes"])
+    if name.endswith(".png"):
+        assert (tmp_path / name).read_bytes() == encode_png(renderer.render(scene).image)
+        assert read_picture(tmp_path / name)[1] == ()
+
+
+def test_render_file_writes_the_contact_sheet(renderer: Renderer, tmp_path: Path) -> None:
+    told = render_file(Scene(object="torus:4000", size=(31, 21)), tmp_path / "views.png", views=True)
+    assert told["width"] > 1000 and (tmp_path / "views.png").is_file()
