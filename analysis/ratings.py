@@ -110,16 +110,20 @@ def refuse_empty_labels(frame: pd.DataFrame, path: Path) -> None:
 
 def of_one_mode(frame: pd.DataFrame, path: Path) -> pd.DataFrame:
     """The live answers; simulated ones only where there is no live one; pilot answers never."""
-    if "mode" not in frame:
-        return frame
-    live = frame[frame["mode"].isin(["live", ""])]
-    if live.empty:
-        live = frame[frame["mode"] == SIMULATED]
-    if live.empty:
+    kept = live_else_simulated(frame)
+    if kept.empty:
         raise BadInput(
             f"{path}: every rating is from a pilot; collect live ratings, or drop the column mode to analyse these"
         )
-    return live.copy()
+    return kept.copy()
+
+
+def live_else_simulated(frame: pd.DataFrame) -> pd.DataFrame:
+    """The rows of people's sessions; those of simulated raters where there is no other; all where no mode is noted."""
+    if "mode" not in frame:
+        return frame
+    live = frame[frame["mode"].isin(["live", ""])]
+    return frame[frame["mode"] == SIMULATED] if live.empty else live
 
 
 def numeric_ratings(frame: pd.DataFrame, scale: int | Mapping[str, int] | None, path: Path) -> "pd.Series[float]":

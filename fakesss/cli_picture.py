@@ -68,8 +68,8 @@ def bake(mesh: str, rays: int, sampling: Literal["cosine", "uniform"], as_json: 
 
     Example: fakesss bake knot:60000 --rays 1024
     """
-    from fakesss.mesh import load_object
     from fakesss.occlusion import bake_occlusion
+    from fakesss.shapes import load_object
 
     baked = bake_occlusion(load_object(mesh), rays, sampling)
     result = {"mesh": mesh, "vertices": len(baked.values), "rays": rays, "sampling": sampling}

@@ -132,25 +132,35 @@ def serve_study(study: Path, host: str, port: int, database: str | None, pilot: 
 @click.option("--started", default=44, show_default=True, type=click.IntRange(1), help="Raters who begin.")
 @click.option("--completed", default=38, show_default=True, type=click.IntRange(0), help="Raters who finish.")
 @click.option("--seed", default=2011, show_default=True, help="Everything drawn by lot follows from it.")
+@click.option("--database", metavar="URL", help="Where ratings go (default: STUDY/ratings.sqlite).")
 @click.option("--effects", type=click.Path(path_type=Path), help="TOML file of the raters' effects (docs/survey.md).")
 @AS_JSON
 def simulate(
-    study: Path, url: str | None, started: int, completed: int, seed: int, effects: Path | None, as_json: bool
+    study: Path,
+    url: str | None,
+    started: int,
+    completed: int,
+    seed: int,
+    database: str | None,
+    effects: Path | None,
+    as_json: bool,
 ) -> None:
     """Let simulated raters answer STUDY over HTTP. Their answers are marked as simulated.
 
     Example: fakesss simulate my-study --started 44 --completed 38
     """
+    from study_server.app import admin_secret
+    from study_server.manifest import load_study
+    from study_server.serve import served
     from study_server.simulate import simulate as walk
 
-    from study_server.serve import served
-
-    go = partial(walk, study=study, started=started, completed=completed, seed=seed, effects=effects)
+    raters = partial(walk, started=started, completed=completed, seed=seed, effects=effects)
+    secret = admin_secret(study, database)
     if url is None:
-        with served(study, mode="simulated") as own:
-            result = go(url=own)
+        with served(study, database_url=database, mode="simulated") as own:
+            result = raters(own, load_study(study), secret)
     else:
-        result = go(url=url)
+        result = raters(url, load_study(study), secret)
     text = "\n".join(f"{name:13} {value}" for name, value in result.items())
     done(result, as_json, text)
     sys.exit(1 if result["lost"] or result["duplicated"] else 0)
@@ -186,7 +196,7 @@ def report(study: Path, out: Path | None, ratings: Path | None, database: str | 
 
     Example: fakesss report my-study
     """
-    from study_server.counts import mode_to_analyse
+    from study_server.export import mode_to_analyse
 
     out = out or study / "report"
     if ratings is None:

@@ -86,7 +86,7 @@ def download(request: Request, site: Unlocked, table: str) -> Response:
         with site.database.reading() as connection:
             yield from table_text(table, Source(connection, site.study, site.mode, site.salt))
 
-    disposition = f'attachment; filename="{table}{"-pilot" if site.mode == "pilot" else ""}.csv"'
+    disposition = f'attachment; filename="{table}{"" if site.mode == "live" else f"-{site.mode}"}.csv"'
     return StreamingResponse(pieces(), media_type="text/csv", headers={"Content-Disposition": disposition})
 
 

@@ -3,7 +3,7 @@
 RATINGS = {
     "session": "public name of the session; one person's visit",
     "participant": "pseudonym of the person: the same for all sessions of one recruiting-service participant",
-    "mode": "live, or pilot",
+    "mode": "live, pilot, or simulated (answered by `fakesss simulate`)",
     "started_at": "when the participant agreed to take part, ISO 8601 UTC",
     "trial": "1, 2, ...: place of the picture in this session's order",
     "presentation": "1, 2, ...: which showing of this picture to this person (2: shown again for test-retest)",

@@ -180,6 +180,14 @@ def export_ratings(
         return [write_table(Path(out), table, source) for table in ROWS]
 
 
+def mode_to_analyse(study_folder: Path, database_url: str | None = None) -> Mode:
+    """"live" where anybody took part for real, otherwise "simulated" where `fakesss simulate` did, otherwise "live"."""
+    identity = load_study(study_folder).identity
+    with open_database(database_url or default_url(study_folder)).reading() as connection:
+        found = connection.scalars(select(sessions.mode).where(sessions.study == identity).distinct()).all()
+    return "simulated" if "live" not in found and "simulated" in found else "live"
+
+
 def write_table(folder: Path, table: str, source: Source) -> Path:
     """One CSV file."""
     path = folder / f"{table}.csv"

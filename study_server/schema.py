@@ -54,7 +54,7 @@ sessions = Table(
     Column("id", String, primary_key=True, comment="public: stands in the export; opens nothing"),
     Column("token", String, nullable=False, unique=True, comment="secret: the participant's address"),
     Column("study", String, nullable=False),
-    Column("mode", String, nullable=False, index=True, comment="live or pilot"),
+    Column("mode", String, nullable=False, index=True, comment="live, pilot or simulated"),
     Column("row", Integer, nullable=False, comment="order row reserved at start"),
     Column(
         "step",

@@ -15,7 +15,7 @@ from study_server.database import Database
 from study_server.manifest import BuiltStudy
 from study_server.throttle import Throttle
 
-Mode = Literal["live", "pilot"]
+Mode = Literal["live", "pilot", "simulated"]
 
 HERE = Path(__file__).parent
 environment = Environment(
