@@ -5,6 +5,7 @@ import os
 import socket
 import subprocess
 import sys
+import tempfile
 from pathlib import Path
 
 import pytest
@@ -16,12 +17,19 @@ STUDY = f'title = "x"\n[scene]\nobject = "sphere:4000"\nsize = [32, 32]\n{FACTOR
 
 
 def fakesss(*arguments: str | Path, **environment: str) -> subprocess.CompletedProcess[str]:
+    """The command run in a fresh folder, so that a picture without -o lands nowhere that matters."""
+    with tempfile.TemporaryDirectory() as folder:
+        return run(folder, *arguments, **environment)
+
+
+def run(folder: str, *arguments: str | Path, **environment: str) -> subprocess.CompletedProcess[str]:
     return subprocess.run(
         [sys.executable, "-m", "fakesss", *map(str, arguments)],
         capture_output=True,
         text=True,
         env={**os.environ, **environment},
         timeout=120,
+        cwd=folder,
     )
 
 
@@ -80,7 +88,7 @@ def test_an_unwritable_folder(tmp_path: Path) -> None:
     (tmp_path / "file").write_text("not a folder")
     expect_sentence(fakesss("new", tmp_path / "file" / "study"), "cannot be written")
     expect_sentence(
-        fakesss("render", "sphere:4000", "--size", "8x8", "-o", tmp_path / "file" / "x.png"), "cannot be written"
+        fakesss("render", "sphere:4000", "--size", "8x8", "-o", tmp_path / "file" / "x.png"), "does not exist; make it"
     )
 
 
