@@ -56,6 +56,7 @@ class Drawing:
     def inline(self) -> str:
         """The SVG to stand in a page with others: no prolog, ids no other figure has, a name for screen readers."""
         body = self.svg[self.svg.index("<svg") :]
+        body = re.sub(r' id="image[^"]*"', "", body)  # named by content: one picture in two places would share it
         body = re.sub(r'(\bid="|url\(#|href="#)', rf"\1{self.stem}-", body)
         return re.sub(r"<svg\b", f'<svg role="img" aria-labelledby="caption-{self.stem}"', body, count=1)
 
