@@ -17,8 +17,8 @@ Floats = NDArray[np.float64]
 Distance = Callable[[Floats], Floats]
 
 FAR = 0.6  # distances beyond this are not told apart; larger than any blend radius
-SAMPLES = 4  # on each piece of a curve, where the search for its nearest point starts
-NEWTON_STEPS = 4
+SAMPLES = 2  # on each piece of a curve, where the search for its nearest point starts
+NEWTON_STEPS = 3
 
 
 def smooth_min(a: Floats, b: Floats, radius: float) -> Floats:

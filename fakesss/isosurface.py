@@ -24,7 +24,7 @@ Box = tuple[tuple[float, float, float], tuple[float, float, float]]
 
 BLOCK = 8  # cells a side; the unit of what is evaluated or skipped
 CHUNK = 32768  # points evaluated at once, so that temporaries stay in the cache
-FINE_FACES = 60_000  # fewest triangles cut from the grid; below, the mesh is simplified
+FINE_FACES = 120_000  # fewest triangles cut from the grid; coarser meshes are simplified from these
 
 
 def evaluate(field: Distance, points: Floats) -> Floats:
@@ -34,25 +34,36 @@ def evaluate(field: Distance, points: Floats) -> Floats:
         return np.concatenate(list(pool.map(field, chunks)))
 
 
-def surface(field: Distance, box: Box, faces: int) -> tuple[Floats, Floats, Indices]:
-    """Positions (V, 3), unit normals (V, 3) and triangles (F, 3) of the zero set inside `box`.
-
-    F is within 3% of `faces`.
-    """
-    wanted = max(faces, FINE_FACES)
+def fine_surface(field: Distance, box: Box, faces: int) -> tuple[Floats, Indices]:
+    """Positions (V, 3) and triangles (F, 3) of the zero set inside `box`; F within 4% of `faces`, outwards wound."""
     step = float(np.max(np.subtract(box[1], box[0]))) / 64
     _, triangles = cut(field, box, step)
-    # the triangles grow with 1/step^2, the better the finer: two steps of a secant are enough
+    # the number of triangles goes with 1/step^2, the better the finer
     for _ in range(3):
-        step *= float(np.sqrt(len(triangles) / wanted))
+        step *= float(np.sqrt(len(triangles) / faces))
         vertices, triangles = cut(field, box, step)
-        if abs(len(triangles) / wanted - 1) < 0.02:
+        if abs(len(triangles) / faces - 1) < 0.04:
             break
-    vertices = settled(field, vertices, triangles, step)
-    if faces < FINE_FACES:
-        vertices, triangles = fast_simplification.simplify(vertices, triangles, target_count=faces, lossless=False)
-        vertices = on_zero_set(field, vertices.astype(float), step)
-    return vertices, normalised(gradient(field, vertices, step)), triangles
+    return settled(field, vertices, triangles, step), triangles
+
+
+def simplified(field: Distance, vertices: Floats, triangles: Indices, faces: int) -> tuple[Floats, Indices]:
+    """`faces` triangles spread over a fine surface by need: small where it bends or is thin."""
+    if faces >= len(triangles):
+        return vertices, triangles
+    vertices, triangles = fast_simplification.simplify(vertices, triangles, target_count=faces, lossless=False)
+    return on_zero_set(field, vertices.astype(float), typical_edge(vertices, triangles), 2), triangles
+
+
+def field_normals(field: Distance, vertices: Floats, triangles: Indices) -> Floats:
+    """Unit normals (V, 3): the direction in which the field rises."""
+    return normalised(gradient(field, vertices, typical_edge(vertices, triangles)))
+
+
+def typical_edge(vertices: Floats, triangles: Indices) -> float:
+    """The median length of the triangles' sides."""
+    sides = vertices[triangles] - vertices[np.roll(triangles, 1, axis=1)]
+    return float(np.median(np.sqrt((sides**2).sum(axis=2))))
 
 
 def cut(field: Distance, box: Box, step: float) -> tuple[Floats, Indices]:
@@ -61,8 +72,8 @@ def cut(field: Distance, box: Box, step: float) -> tuple[Floats, Indices]:
     blocks = np.ceil((np.array(box[1]) + 2 * step - low) / (BLOCK * step)).astype(int)
     corner = np.stack(np.meshgrid(*(np.arange(n) for n in blocks), indexing="ij"), axis=-1).reshape(-1, 3)
     middle = evaluate(field, low + (corner * BLOCK + (BLOCK - 1) / 2) * step)
-    # half a block's diagonal, doubled because the fields are distances to first order only
-    near = np.abs(middle) < 2 * np.sqrt(3) * BLOCK / 2 * step
+    # half a block's diagonal, and half as much again because the fields are distances to first order only
+    near = np.abs(middle) < 1.5 * np.sqrt(3) * BLOCK / 2 * step
     volume = np.repeat(np.sign(middle), BLOCK**3).astype(np.float32).reshape(-1, BLOCK, BLOCK, BLOCK)
     cell = np.stack(np.meshgrid(*(np.arange(BLOCK),) * 3, indexing="ij"), axis=-1).reshape(-1, 3)
     points = low + (corner[near][:, None] * BLOCK + cell) * step
@@ -82,9 +93,9 @@ def gradient(field: Distance, points: Floats, step: float) -> Floats:
     return slope
 
 
-def on_zero_set(field: Distance, points: Floats, step: float) -> Floats:
-    """Points moved onto the zero set by Newton steps along the gradient, none longer than half a grid step."""
-    for _ in range(3):
+def on_zero_set(field: Distance, points: Floats, step: float, rounds: int) -> Floats:
+    """Points moved onto the zero set by Newton steps along the gradient, none longer than half of `step`."""
+    for _ in range(rounds):
         slope = gradient(field, points, step)
         steepness = np.maximum((slope**2).sum(axis=1), 0.05)
         move = slope * (evaluate(field, points) / steepness)[:, None]
@@ -99,10 +110,10 @@ def settled(field: Distance, vertices: Floats, triangles: Indices, step: float) 
     ones = np.ones(len(ends))
     graph = coo_array((ones, (ends[:, 0], ends[:, 1])), shape=(len(vertices),) * 2).tocsr()
     degree = np.maximum(np.asarray(graph.sum(axis=1)).ravel(), 1)
-    vertices = on_zero_set(field, vertices, step)
     for _ in range(2):
         normals = normalised(gradient(field, vertices, step))
-        for _ in range(2):
+        for _ in range(4):
             pull = (graph @ vertices) / degree[:, None] - vertices
-            vertices = vertices + 0.6 * (pull - normals * (pull * normals).sum(axis=1, keepdims=True))
-    return on_zero_set(field, vertices, step)
+            vertices = vertices + 0.5 * (pull - normals * (pull * normals).sum(axis=1, keepdims=True))
+        vertices = on_zero_set(field, vertices, step, 1)
+    return on_zero_set(field, vertices, step, 1)

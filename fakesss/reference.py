@@ -1,7 +1,8 @@
 """Exact thickness along rays, to judge the rendered layers by: ray casting for any mesh, closed forms for solids.
 
 An *interval* is the first stretch that a ray spends inside: distances of entry and exit along unit directions, (N,)
-float64 in sphere radii, NaN where there is none. Rays are (N, 3) float64 origins and unit directions in the world frame.
+float64 in sphere radii, NaN where there is none. Rays are (N, 3) float64 origins and unit directions in the
+world frame.
 """
 
 import numpy as np

@@ -3,13 +3,9 @@
 Made for this package. Units are arbitrary; the mesh is scaled afterwards.
 """
 
-from functools import cache
-
 import numpy as np
 
 from fakesss.distance import Custom, Ellipsoid, Floats, Joined, Tube, smooth_max, turned
-from fakesss.isosurface import surface
-from fakesss.solids import Surface
 
 BOX = ((-0.9, -1.35, -0.6), (1.15, 1.3, 0.7))
 BASE = -1.25  # where the forearm is cut off flat
@@ -51,22 +47,15 @@ def thumb_web(points: Floats) -> Floats:
     return smooth_max(sheet - half, outline, 0.03)
 
 
-@cache
-def field() -> Joined:
-    """The distance field inside `BOX`."""
-    return Joined(
-        [
-            (Tube(ARM), 0.1),
-            *((Tube(finger), 0.07) for finger in (LITTLE, RING, MIDDLE, INDEX)),
-            (Ellipsoid((-0.26, -0.50, 0.10), (0.12, 0.26, 0.12), turned(z=12)), 0.12),
-            (Tube(THUMB), 0.12),
-            (Custom(webs, (-0.48, -0.4, -0.3), (0.36, 0.35, 0.4)), 0.05),
-            (Custom(thumb_web, (0.05, -0.6, -0.2), (0.75, 0.2, 0.45)), 0.05),
-            (Custom(lambda points: points[:, 1] - BASE, (-2, -3, -2), (2, BASE + 0.1, 2)), -0.06),
-        ]
-    )
-
-
-def hand(faces: int) -> Surface:
-    """About `faces` triangles of the hand."""
-    return surface(field(), BOX, faces)
+# the distance inside `BOX`
+field = Joined(
+    [
+        (Tube(ARM), 0.1),
+        *((Tube(finger), 0.07) for finger in (LITTLE, RING, MIDDLE, INDEX)),
+        (Ellipsoid((-0.26, -0.50, 0.10), (0.12, 0.26, 0.12), turned(z=12)), 0.12),
+        (Tube(THUMB), 0.12),
+        (Custom(webs, (-0.48, -0.4, -0.3), (0.36, 0.35, 0.4)), 0.05),
+        (Custom(thumb_web, (0.05, -0.6, -0.2), (0.75, 0.2, 0.45)), 0.05),
+        (Custom(lambda points: points[:, 1] - BASE, (-2, -3, -2), (2, BASE + 0.1, 2)), -0.06),
+    ]
+)

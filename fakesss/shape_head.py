@@ -3,13 +3,9 @@
 Made for this package. Units are arbitrary; the mesh is scaled afterwards.
 """
 
-from functools import cache
-
 import numpy as np
 
 from fakesss.distance import Custom, Ellipsoid, Floats, Joined, Tube, smooth_max, turned
-from fakesss.isosurface import surface
-from fakesss.solids import Surface
 
 BOX = ((-1.2, -1.1, -0.9), (1.2, 1.0, 0.9))
 BASE = -0.92  # where the neck is cut off flat
@@ -60,31 +56,24 @@ def both(part: Custom | Tube | Ellipsoid, blend: float) -> list[tuple[Custom | T
     return [(part, blend), (left(part), blend)]
 
 
-@cache
-def field() -> Joined:
-    """The distance field inside `BOX`."""
-    return Joined(
-        [
-            (Ellipsoid((0.0, 0.22, -0.08), (0.47, 0.50, 0.58)), 0.1),
-            (Ellipsoid((0.0, -0.12, 0.16), (0.38, 0.46, 0.38)), 0.2),
-            (Ellipsoid((0.0, -0.50, 0.36), (0.15, 0.12, 0.14)), 0.22),
-            (Ellipsoid((0.0, -0.30, 0.36), (0.20, 0.20, 0.17)), 0.15),
-            (Tube(NECK), 0.12),
-            (Custom(lambda points: points[:, 1] - BASE, (-2, -2, -2), (2, BASE + 0.1, 2)), -0.06),
-            *both(Ellipsoid((0.25, -0.10, 0.38), (0.11, 0.10, 0.09)), 0.15),
-            *both(Ellipsoid((0.185, 0.085, 0.575), (0.125, 0.085, 0.10), turned(z=-6)), -0.14),
-            (Ellipsoid((0.0, -0.02, 0.46), (0.075, 0.24, 0.15)), 0.08),
-            (Tube(NOSE), 0.07),
-            *both(Tube(WING), 0.06),
-            *both(Tube(BROW), 0.10),
-            *both(Ellipsoid((0.185, 0.085, 0.445), (0.085, 0.06, 0.07)), 0.025),
-            (Tube(LIP_ABOVE), 0.04),
-            (Tube(LIP_BELOW), 0.04),
-            *both(Custom(ear, (0.25, -0.35, -0.5), (1.1, 0.8, 0.45)), 0.07),
-        ]
-    )
-
-
-def head(faces: int) -> Surface:
-    """About `faces` triangles of the head."""
-    return surface(field(), BOX, faces)
+# the distance inside `BOX`
+field = Joined(
+    [
+        (Ellipsoid((0.0, 0.22, -0.08), (0.47, 0.50, 0.58)), 0.1),
+        (Ellipsoid((0.0, -0.12, 0.16), (0.38, 0.46, 0.38)), 0.2),
+        (Ellipsoid((0.0, -0.50, 0.36), (0.15, 0.12, 0.14)), 0.22),
+        (Ellipsoid((0.0, -0.30, 0.36), (0.20, 0.20, 0.17)), 0.15),
+        (Tube(NECK), 0.12),
+        (Custom(lambda points: points[:, 1] - BASE, (-2, -2, -2), (2, BASE + 0.1, 2)), -0.06),
+        *both(Ellipsoid((0.25, -0.10, 0.38), (0.11, 0.10, 0.09)), 0.15),
+        *both(Ellipsoid((0.185, 0.085, 0.575), (0.125, 0.085, 0.10), turned(z=-6)), -0.14),
+        (Ellipsoid((0.0, -0.02, 0.46), (0.075, 0.24, 0.15)), 0.08),
+        (Tube(NOSE), 0.07),
+        *both(Tube(WING), 0.06),
+        *both(Tube(BROW), 0.10),
+        *both(Ellipsoid((0.185, 0.085, 0.445), (0.085, 0.06, 0.07)), 0.025),
+        (Tube(LIP_ABOVE), 0.04),
+        (Tube(LIP_BELOW), 0.04),
+        *both(Custom(ear, (0.25, -0.35, -0.5), (1.1, 0.8, 0.45)), 0.07),
+    ]
+)

@@ -7,8 +7,6 @@ package. Units are arbitrary; the mesh is scaled afterwards.
 import numpy as np
 
 from fakesss.distance import Floats, smooth_max, smooth_min
-from fakesss.isosurface import surface
-from fakesss.solids import Surface
 
 BOX = ((-1.25, -1.25, -0.75), (1.25, 1.25, 0.75))
 
@@ -35,14 +33,9 @@ def wall_field(points: Floats, turn: int) -> Floats:
     return smooth_max(smooth_max(offset, -(offset + wall), 0.02), radius * angle, 0.03)
 
 
-def shell_field(points: Floats) -> Floats:
-    """Distance inside `BOX`."""
-    total = np.sqrt((points**2).sum(axis=1)) - 0.05  # the core, where the turns become too small
+def field(points: Floats) -> Floats:
+    """The distance inside `BOX`."""
+    total: Floats = np.sqrt((points**2).sum(axis=1)) - 0.05  # the core, where the turns become too small
     for turn in (-1, 0, 1, 2):
         total = smooth_min(total, wall_field(points, turn), 0.04)
     return total
-
-
-def shell(faces: int) -> Surface:
-    """About `faces` triangles of the shell."""
-    return surface(shell_field, BOX, faces)

@@ -1,31 +1,41 @@
 """The object of a scene: a built-in one by name and number of faces, or a mesh file.
 
-`sphere`, `box`, `torus` and `knot` are parametric; the others are distance fields cut into triangles. All are closed
-surfaces, and none needs a download.
+Solids are parametric; sculptures are distance fields cut into triangles. All are closed surfaces, and none needs a
+download.
 """
 
 from collections.abc import Callable
 from pathlib import Path
 
 from fakesss import cache, shape_figure, shape_hand, shape_head, shape_relief, shape_shell, solids
+from fakesss.distance import Distance
 from fakesss.mesh import EXTENSIONS, Mesh, load_mesh, mesh_from_surface
 from fakesss.problem import BadInput, nearest
 
 DEFAULT_FACES = 60_000
 FACES = (1_000, 1_000_000)  # fewest and most triangles that a built-in object is made with
-VERSION = 3  # raised whenever a built-in object changes, so that cached ones are made again
+VERSION = 6  # raised whenever a sculpture changes, so that cached ones are made again
 
-BUILT_IN: dict[str, Callable[[int], solids.Surface]] = {
-    "figure": shape_figure.figure,
-    "head": shape_head.head,
-    "hand": shape_hand.hand,
+Box = tuple[tuple[float, float, float], tuple[float, float, float]]
+
+SCULPTURES: dict[str, tuple[Distance, Box]] = {
+    "figure": (shape_figure.field, shape_figure.BOX),
+    "head": (shape_head.field, shape_head.BOX),
+    "hand": (shape_hand.field, shape_hand.BOX),
+    "shell": (shape_shell.field, shape_shell.BOX),
+    "relief": (shape_relief.field, shape_relief.BOX),
+}
+SOLIDS: dict[str, Callable[[int], solids.Surface]] = {
     "knot": solids.knot,
-    "shell": shape_shell.shell,
-    "relief": shape_relief.relief,
     "sphere": solids.sphere,
     "box": solids.box,
     "torus": solids.torus,
 }
+
+
+def names() -> tuple[str, ...]:
+    """The built-in objects, the default first."""
+    return (*SCULPTURES, *SOLIDS)
 
 
 def load_object(name: str, folder: Path = Path()) -> Mesh:
@@ -35,17 +45,17 @@ def load_object(name: str, folder: Path = Path()) -> Mesh:
     whatever `load_mesh` cannot read.
     """
     shape, _, count = name.partition(":")
-    if shape in BUILT_IN:
+    if shape in names():
         return built_in(shape, face_count(name, count))
     path = folder / name
     if path.is_file() or Path(name).suffix.lower().removeprefix(".") in EXTENSIONS or len(Path(name).parts) > 1:
         return load_mesh(path)
-    raise BadInput(f'object "{name}": is neither a built-in object nor a file; {nearest(shape, BUILT_IN)}')
+    raise BadInput(f'object "{name}": is neither a built-in object nor a file; {nearest(shape, names())}')
 
 
 def face_count(name: str, count: str) -> int:
     """The number after the colon, or the default where there is none."""
-    if name.find(":") < 0:
+    if ":" not in name:
         return DEFAULT_FACES
     low, high = FACES
     if not count.isascii() or not count.isdigit() or not low <= int(count) <= high:
@@ -54,17 +64,28 @@ def face_count(name: str, count: str) -> int:
 
 
 def built_in(shape: str, faces: int = DEFAULT_FACES) -> Mesh:
-    """A built-in object of about `faces` triangles (within 5%), made once and then kept in the cache."""
-
-    def make() -> cache.Arrays:
-        positions, normals, triangles = BUILT_IN[shape](faces)
-        return {"positions": positions, "normals": normals, "faces": triangles}
-
+    """A built-in object of about `faces` triangles (within 5%); sculptures are made once and then kept in the cache."""
+    if shape in SOLIDS:
+        return mesh_from_surface(*SOLIDS[shape](faces))
     key = {"version": VERSION, "shape": shape, "faces": faces}
-    arrays, _ = cache.cached("shapes", key, make)
+    arrays, _ = cache.cached("shapes", key, lambda: sculpture(shape, faces))
     return mesh_from_surface(arrays["positions"], arrays["normals"], arrays["faces"])
 
 
-def names() -> tuple[str, ...]:
-    """The built-in objects."""
-    return tuple(BUILT_IN)
+def sculpture(shape: str, faces: int) -> cache.Arrays:
+    """Positions, normals and faces of a sculpture; the fine surface that coarse ones come from is cached too."""
+    from fakesss import isosurface  # with all it imports, slow to load, and not needed for what is cached
+
+    field, box = SCULPTURES[shape]
+    cut = max(faces, isosurface.FINE_FACES)
+
+    def make() -> cache.Arrays:
+        vertices, triangles = isosurface.fine_surface(field, box, cut)
+        return {"positions": vertices, "faces": triangles}
+
+    fine, _ = cache.cached("shapes", {"version": VERSION, "shape": shape, "cut": cut}, make)
+    vertices, triangles = fine["positions"], fine["faces"]
+    if faces < cut:
+        vertices, triangles = isosurface.simplified(field, vertices, triangles, faces)
+    normals = isosurface.field_normals(field, vertices, triangles)
+    return {"positions": vertices, "normals": normals, "faces": triangles}

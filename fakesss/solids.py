@@ -130,7 +130,7 @@ def swept(curve: Callable[[Floats], Floats], radius: Callable[[Floats], Floats],
     step = np.sqrt(((np.roll(points, -1, axis=0) - np.roll(points, 1, axis=0)) ** 2).sum(axis=1))
     slope = (np.roll(radius(u), -1) - np.roll(radius(u), 1)) / step
     normals = normalised(outward - slope[:, None, None] * tangent[:, None])
-    return positions.reshape(-1, 3), normals.reshape(-1, 3), grid(along, across, closed=True)
+    return positions.reshape(-1, 3), normals.reshape(-1, 3), grid(along, across, closed=True)[:, ::-1]
 
 
 def frame(points: Floats) -> Floats:
