@@ -12,6 +12,7 @@ uniform float depth_range;  // difference at which a tap's weight reaches 0; sph
 uniform float open_thickness;
 #if AS_PUBLISHED
 uniform vec2 clip;
+uniform float distance;
 #endif
 
 out float blurred_thickness;
@@ -22,13 +23,13 @@ const float KERNEL[9] = float[](41.0, 26.0, 7.0,
                                  7.0,  4.0, 1.0);
 
 #if AS_PUBLISHED
-float compared(float depth) { return is_empty(depth) ? 1.0 : nonlinear_depth(depth, clip); }
-bool is_background(float depth) { return depth > PUBLISHED_BACKGROUND; }
-float to_linear(float depth) { return linear_depth(depth, clip); }
+float compared(float layer) { return is_empty(layer) ? 1.0 : nonlinear_depth(layer - ORIGIN + distance, clip); }
+bool is_background(float window) { return window > PUBLISHED_BACKGROUND; }
+float to_layer(float window) { return linear_depth(window, clip) - distance + ORIGIN; }
 #else
-float compared(float depth) { return depth; }
-bool is_background(float depth) { return is_empty(depth); }
-float to_linear(float depth) { return depth; }
+float compared(float layer) { return layer; }
+bool is_background(float layer) { return is_empty(layer); }
+float to_layer(float layer) { return layer; }
 #endif
 
 float blurred(float centre) {
@@ -42,7 +43,7 @@ float blurred(float centre) {
             sum += weight * (depth - centre);  // of differences: their rounding is far below that of depths
             weights += weight;
         }
-    return to_linear(weights > 0.0 ? centre + sum / weights : centre);
+    return to_layer(weights > 0.0 ? centre + sum / weights : centre);
 }
 
 void main() {

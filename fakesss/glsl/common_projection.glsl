@@ -1,9 +1,13 @@
-// The projection of camera.py: `eye` is (x right, y up, depth).
-uniform vec2 tangent;  // of the half angles of the picture's width and height
-uniform vec2 clip;     // near and far distance, sphere radii
+// The projection of camera.View. `eye` is (x right, y up, depth beyond the sphere's centre): measured from the centre,
+// depths keep float32's full precision however far away the camera stands.
+uniform vec2 tangent;    // of the half angles of the picture's width and height
+uniform vec2 clip;       // distances of the near and far plane, sphere radii
+uniform vec2 room;       // from the near plane to the centre, from the centre to the far plane
+uniform float distance;  // of the centre
 
 vec4 project(vec3 eye) {
-    float scale = (clip.y + clip.x) / (clip.y - clip.x);
-    float offset = -2.0 * clip.y * clip.x / (clip.y - clip.x);
-    return vec4(eye.xy / tangent, scale * eye.z + offset, eye.z);
+    float beyond_near = room.x + eye.z;
+    float before_far = room.y - eye.z;
+    float z = (clip.y * beyond_near - clip.x * before_far) / (room.x + room.y);
+    return vec4(eye.xy / tangent, z, distance + eye.z);
 }

@@ -1,5 +1,5 @@
 // The nearest surface: what the picture shows, before any light.
-in float depth;
+in float layer;
 in vec3 normal;
 in float occlusion;
 
@@ -10,6 +10,6 @@ void main() {
     // An open sheet seen from behind shows its back with the normal turned to the viewer.
     vec3 facing = gl_FrontFacing ? normal : -normal;
     float squared = dot(facing, facing);
-    front = depth;
+    front = layer;
     surface = vec4(squared > 0.0 ? facing * inversesqrt(squared) : vec3(0.0), occlusion);
 }

@@ -1,3 +1,4 @@
+#include "common_layers.glsl"
 #include "common_projection.glsl"
 
 in vec3 in_eye;
@@ -5,13 +6,13 @@ in vec3 in_normal;
 in float in_occlusion;
 
 invariant gl_Position;  // the peel compares depths of the same triangle between two passes
-out float depth;
+out float layer;
 out vec3 normal;
 out float occlusion;
 
 void main() {
     gl_Position = project(in_eye);
-    depth = in_eye.z;
+    layer = ORIGIN + in_eye.z;
     normal = in_normal;
     occlusion = in_occlusion;
 }

@@ -4,24 +4,29 @@
 #include "common_layers.glsl"
 
 #define AS_PUBLISHED 0  // 1: compares non-linear depths, as the program of 2011 did
-#define PEEL_EPSILON 1e-5  // sphere diameters: above float32 rounding at any distance below 100 radii
+#define PEEL_EPSILON 1e-5  // sphere diameters: well above float32 rounding of a layer
 #define PUBLISHED_EPSILON 1e-6  // thesis appendix B, in non-linear depth
 
 uniform sampler2D front;
 #if AS_PUBLISHED
 uniform vec2 clip;
+uniform float distance;
 #endif
 
-in float depth;
+in float layer;
 out float second;
+
+#if AS_PUBLISHED
+float window(float layer) { return nonlinear_depth(layer - ORIGIN + distance, clip); }
+#endif
 
 void main() {
     float nearest = texelFetch(front, ivec2(gl_FragCoord.xy), 0).r;
 #if AS_PUBLISHED
-    bool behind = nonlinear_depth(depth, clip) > nonlinear_depth(nearest, clip) + PUBLISHED_EPSILON;
+    bool behind = window(layer) > window(nearest) + PUBLISHED_EPSILON;
 #else
-    bool behind = depth > nearest + PEEL_EPSILON * DIAMETER;
+    bool behind = layer > nearest + PEEL_EPSILON * DIAMETER;
 #endif
     if (!behind) discard;
-    second = depth;
+    second = layer;
 }

@@ -30,8 +30,7 @@ out vec4 shaded;
 
 void main() {
     ivec2 here = ivec2(gl_FragCoord.xy);
-    float depth = texelFetch(front, here, 0).r;
-    if (is_empty(depth)) discard;
+    if (is_empty(texelFetch(front, here, 0).r)) discard;
     vec4 normal_occlusion = texelFetch(surface, here, 0);
     vec3 normal = normal_occlusion.xyz;
     vec2 centred = gl_FragCoord.xy / vec2(textureSize(front, 0)) * 2.0 - 1.0;
