@@ -181,7 +181,7 @@ def export_ratings(
 
 
 def mode_to_analyse(study_folder: Path, database_url: str | None = None) -> Mode:
-    """"live" where anybody took part for real, otherwise "simulated" where `fakesss simulate` did, otherwise "live"."""
+    """What a report is about: live answers where there are any, else simulated ones where there are any."""
     identity = load_study(study_folder).identity
     with open_database(database_url or default_url(study_folder)).reading() as connection:
         found = connection.scalars(select(sessions.mode).where(sessions.study == identity).distinct()).all()

@@ -27,7 +27,7 @@ class Participant:
 
     def consent(self) -> "Participant":
         """Past the first page: the session is started."""
-        self.post("consent", **self.state["external"])
+        self.post("consent", **self.state.get("external", {}))
         return self
 
     def to_trials(self) -> "Participant":

@@ -28,14 +28,21 @@ def url(study: Path) -> Iterator[str]:
         yield address
 
 
+def downloaded(study: Path, url: str, table: str) -> list[dict[str, str]]:
+    """The rows of an exported table, downloaded from the server at `url`."""
+    headers = {"Authorization": f"Bearer {admin_secret(study)}"}
+    response = httpx.get(f"{url}/admin/export/{table}.csv", headers=headers)
+    assert response.status_code == 200
+    return list(csv.DictReader(io.StringIO(response.text)))
+
+
 @pytest.fixture
-def exported(study: Path, url: str) -> Callable[[str], list[dict[str, str]]]:
-    """The rows of an exported table, downloaded from the server."""
+def csv_rows() -> Callable[..., list[dict[str, str]]]:
+    """`downloaded`, for tests that serve a study of their own."""
+    return downloaded
 
-    def rows(table: str = "ratings") -> list[dict[str, str]]:
-        headers = {"Authorization": f"Bearer {admin_secret(study)}"}
-        response = httpx.get(f"{url}/admin/export/{table}.csv", headers=headers)
-        assert response.status_code == 200
-        return list(csv.DictReader(io.StringIO(response.text)))
 
-    return rows
+@pytest.fixture
+def exported(study: Path, url: str) -> Callable[..., list[dict[str, str]]]:
+    """The rows of an exported table of the study at `url`."""
+    return lambda table="ratings": downloaded(study, url, table)

@@ -24,7 +24,7 @@ def test_the_survey_table_may_be_missing() -> None:
         ({"question": [QUESTION, QUESTION]}, 'two question entries are named "translucent"'),
         ({"question": [{"name": "a"}]}, "study.toml: question[1].text: is missing; add it"),
         ({"survey": {"order": "latin"}}, "study.toml: survey.order: 'latin': must be"),
-        ({"survey": {"about": [{"name": "a", "text": "?", "choces": []}]}}, 'survey.about[1].choces: unknown key; did'),
+        ({"survey": {"about": [{"name": "a", "text": "?", "choces": []}]}}, "survey.about[1].choces: unknown key; did"),
         ({"survey": {"release_after_minutes": float("nan")}}, "survey.release_after_minutes"),
     ],
 )
@@ -36,5 +36,5 @@ def test_errors_name_the_key_and_the_mend(tables: dict[str, object], sentence: s
 
 
 def test_a_study_without_questions_is_refused() -> None:
-    with pytest.raises(BadInput, match="study.toml: question: is missing"):
+    with pytest.raises(BadInput, match=r"study\.toml: question: is missing"):
         check_survey({}, "study.toml")

@@ -47,7 +47,9 @@ def test_ten_identical_posts_at_once_make_one_row(url: str, exported: Exported) 
     person = Participant(url).to_trials()
     body = person.answers(6)
     with ThreadPoolExecutor(10) as pool:
-        replies = list(pool.map(lambda _: httpx.post(f"{url}{person.here}/ratings", json=body, headers=JSON), range(10)))
+        replies = list(
+            pool.map(lambda _: httpx.post(f"{url}{person.here}/ratings", json=body, headers=JSON), range(10))
+        )
     assert [reply.status_code for reply in replies] == [200] * 10
     assert len({str(reply.json()["saved"]) for reply in replies}) == 1
     answered = [row for row in exported() if row["rating"]]

@@ -1,0 +1,107 @@
+"""The export: fixed columns, every expected row, nothing a spreadsheet would run, nothing undescribed."""
+
+import csv
+import re
+from collections.abc import Callable
+from pathlib import Path
+
+import pandas as pd
+import pytest
+from study_fixture import write_study
+from survey_client import Participant
+
+from fakesss.problem import BadInput
+from study_server import schema
+from study_server.cells import ROWS_AT_ONCE, cell, csv_text, iso
+from study_server.columns import RATINGS
+from study_server.export import export_ratings
+
+DOCS = Path(__file__).parents[2] / "docs"
+Exported = Callable[..., list[dict[str, str]]]
+
+
+def test_the_ratings_have_the_documented_columns_in_order() -> None:
+    text = (DOCS / "architecture.md").read_text(encoding="utf-8")
+    listed = re.search(r"long CSV: `([^`]+)`", text)
+    assert listed
+    assert [name.strip() for name in listed[1].split(",")] == list(RATINGS)
+
+
+def test_every_column_and_table_is_in_the_docs() -> None:
+    text = (DOCS / "survey.md").read_text(encoding="utf-8")
+    missing = [name for table in schema.tables.tables.values() for name in (table.name,) if f"`{name}`" not in text]
+    missing += [name for name in RATINGS if f"`{name}`" not in text]
+    assert not missing
+
+
+def test_unanswered_pictures_are_empty_ratings(url: str, study: Path, tmp_path: Path) -> None:
+    Participant(url).to_trials().rate(6)
+    export_ratings(study, tmp_path / "out")
+    frame = pd.read_csv(tmp_path / "out" / "ratings.csv")
+    assert list(frame.columns) == list(RATINGS)
+    assert len(frame) == 6
+    assert frame.rating.tolist()[:2] == [6, 6]
+    assert frame.rating[2:].isna().all()
+    assert frame.trial.tolist() == [1, 1, 2, 2, 3, 3]
+
+
+def test_five_tables_and_a_codebook_that_describes_them_all(url: str, study: Path, tmp_path: Path) -> None:
+    Participant(url).to_trials().to_end()
+    paths = export_ratings(study, tmp_path / "out")
+    assert [path.name for path in paths] == [
+        "ratings.csv", "participants.csv", "events.csv", "stimuli.csv", "codebook.csv"
+    ]  # fmt: skip
+    described = pd.read_csv(tmp_path / "out" / "codebook.csv")
+    assert described.description.str.len().min() > 5
+    for path in paths[:-1]:
+        frame = pd.read_csv(path)
+        assert len(frame) > 0
+        assert list(frame.columns) == described.column[described.table == path.name].tolist()
+
+
+def test_the_stimuli_bring_their_levels(study: Path, tmp_path: Path) -> None:
+    export_ratings(study, tmp_path / "out")
+    frame = pd.read_csv(tmp_path / "out" / "stimuli.csv")
+    assert frame["factor_thickness exponent"].tolist() == [25, 18, 30]
+    assert pd.read_csv(tmp_path / "out" / "ratings.csv").empty
+
+
+def test_a_comment_cannot_become_a_formula(url: str, exported: Exported) -> None:
+    person = Participant(url).to_trials()
+    while person.state["step"] == "trials":
+        person.rate()
+    person.post("comments", comments='=HYPERLINK("http://x")\nsecond, line')
+    assert exported("participants")[0]["comments"] == '\'=HYPERLINK("http://x")\nsecond, line'
+
+
+@pytest.mark.parametrize("value", ["=1", "+1", "-1", "@x", "\tx", "\rx"])
+def test_formula_cells(value: str) -> None:
+    assert cell(value) == "'" + value
+
+
+def test_numbers_stay_numbers() -> None:
+    assert (cell(-1.5), cell(-2), cell(None), cell(0.1 + 0.2)) == ("-1.5", -2, None, "0.3")
+
+
+def test_pieces_join_to_the_whole() -> None:
+    rows = [{"a": number, "b": "x"} for number in range(2 * ROWS_AT_ONCE + 1)]
+    pieces = list(csv_text(["a", "b"], rows))
+    assert len(pieces) == 3
+    assert len(list(csv.reader("".join(pieces).splitlines()))) == len(rows) + 1
+
+
+def test_iso_is_utc_with_milliseconds() -> None:
+    assert iso(1_700_000_000.1234) == "2023-11-14T22:13:20.123Z"
+    assert iso(None) is None
+
+
+def test_a_folder_that_cannot_be_written(study: Path, tmp_path: Path) -> None:
+    (tmp_path / "file").write_text("")
+    with pytest.raises(BadInput, match="cannot be written"):
+        export_ratings(study, tmp_path / "file" / "out")
+
+
+def test_another_version_of_the_study_is_not_exported_as_this_one(url: str, study: Path, tmp_path: Path) -> None:
+    write_study(study, survey={"practice": 2})
+    with pytest.raises(BadInput, match="another version of this study"):
+        export_ratings(study, tmp_path / "out")

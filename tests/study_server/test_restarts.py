@@ -1,0 +1,143 @@
+"""Starting, stopping, killing: nobody is lost, and what cannot be served says so in one sentence."""
+
+import os
+import signal
+import socket
+import subprocess
+import sys
+import threading
+import time
+from pathlib import Path
+from typing import Any
+
+import httpx
+import pytest
+from study_fixture import write_study
+from survey_client import JSON, Participant
+
+from fakesss.problem import BadInput
+from study_server.app import admin_secret, create_app
+from study_server.manifest import load_study
+from study_server.serve import listening, serve, served
+from study_server.simulate import simulate
+
+PROGRAM = "import sys; from pathlib import Path; from study_server.serve import serve; "
+
+
+def started_process(study: Path, port: int) -> "subprocess.Popen[bytes]":
+    """A server process of its own, answering."""
+    program = f"{PROGRAM} serve(Path(sys.argv[1]), port=int(sys.argv[2]))"
+    process = subprocess.Popen([sys.executable, "-c", program, str(study), str(port)], stderr=subprocess.DEVNULL)
+    for _ in range(400):
+        try:
+            if httpx.get(f"http://127.0.0.1:{port}/health").status_code == 200:
+                return process
+        except httpx.TransportError:
+            pass
+        time.sleep(0.05)
+    process.kill()
+    raise AssertionError("the server did not start")
+
+
+def free_port() -> int:
+    with socket.socket() as probe:
+        probe.bind(("127.0.0.1", 0))
+        return int(probe.getsockname()[1])
+
+
+@pytest.mark.parametrize("kills", [3, pytest.param(100, marks=[pytest.mark.long, pytest.mark.timeout(1200)])])
+def test_killed_under_load_every_acknowledged_rating_is_there_once(tmp_path: Path, kills: int) -> None:
+    study, port = write_study(tmp_path, 9), free_port()
+    raters = 8 + kills
+    result: dict[str, Any] = {}
+
+    def run() -> None:
+        address = f"http://127.0.0.1:{port}"
+        built = load_study(study)
+        secret = admin_secret(study)
+        result.update(simulate(address, built, secret, started=raters, completed=raters - 2, progress=False))
+
+    process = started_process(study, port)
+    load = threading.Thread(target=run)
+    load.start()
+    killed = 0
+    try:
+        while load.is_alive() and killed < kills:
+            time.sleep(0.25 + 0.01 * (killed % 7))
+            process.send_signal(signal.SIGKILL)
+            process.wait()
+            killed += 1
+            process = started_process(study, port)
+        load.join()
+    finally:
+        process.kill()
+        process.wait()
+    assert killed >= min(kills, 2)
+    assert (result["started"], result["completed"]) == (raters, raters - 2)
+    assert (result["lost"], result["duplicated"]) == (0, 0)
+    assert result["stored"] >= result["acknowledged"] >= (raters - 2) * 18
+
+
+def test_a_restart_loses_nobodys_place(study: Path) -> None:
+    with served(study) as url:
+        person = Participant(url).to_trials()
+        person.rate(3)
+    with served(study) as url:
+        state = httpx.get(f"{url}{person.here}", headers=JSON).json()
+    assert (state["step"], state["trial"]) == ("trials", 2)
+
+
+def test_a_port_in_use(study: Path) -> None:
+    with listening("127.0.0.1", 0) as taken:
+        port = taken.getsockname()[1]
+        with pytest.raises(BadInput, match=rf"127\.0\.0\.1:{port}: cannot be listened on .*; choose another"):
+            serve(study, port=port)
+
+
+def test_a_port_that_is_none(study: Path) -> None:
+    with pytest.raises(BadInput, match="70000: cannot be listened on"):
+        serve(study, port=70_000)
+
+
+def test_a_folder_that_cannot_be_written(study: Path) -> None:
+    (study / "ratings.sqlite").mkdir()
+    with pytest.raises(BadInput, match=r"ratings\.sqlite: cannot be opened for writing"):
+        create_app(study)
+
+
+@pytest.mark.skipif(os.geteuid() == 0, reason="root may write anywhere")
+def test_a_folder_without_the_right_to_write(study: Path) -> None:
+    study.chmod(0o500)
+    with pytest.raises(BadInput, match="cannot be opened for writing"):
+        create_app(study)
+
+
+def test_a_file_that_is_no_database(study: Path) -> None:
+    (study / "ratings.sqlite").write_text("not a database, but long enough to be read as one" * 100)
+    with pytest.raises(BadInput, match="cannot be opened for writing"):
+        create_app(study)
+
+
+@pytest.mark.parametrize("url", ["nonsense", "oracle+nothing://x", "sqlite:////nowhere/at/all.sqlite"])
+def test_a_database_address_that_is_none(study: Path, url: str) -> None:
+    with pytest.raises(BadInput):
+        create_app(study, database_url=url)
+
+
+def test_live_answers_to_another_study_are_not_mixed_with_these(study: Path) -> None:
+    with served(study) as url:
+        Participant(url).consent()
+    write_study(study, survey={"practice": 2})
+    with pytest.raises(BadInput, match=r"ratings\.sqlite: holds 1 live session\(s\) of another version of this study"):
+        create_app(study)
+
+
+def test_after_a_pilot_the_study_may_be_changed(study: Path) -> None:
+    query = "?STUDY_ID=s&PROLIFIC_PID=p"
+    with served(study, mode="pilot") as url:
+        pilot = Participant(url, query).to_trials()
+    write_study(study, survey={"practice": 2})
+    with served(study) as url:
+        assert Participant(url, query).consent().state["step"] == "about"
+        assert httpx.get(f"{url}{pilot.here}", headers=JSON).status_code == 404
+        assert pilot.here != Participant(url, query).here

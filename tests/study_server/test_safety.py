@@ -1,0 +1,94 @@
+"""What the web may bring: other sites, huge bodies, text that looks like HTML, a disk that is full."""
+
+from collections.abc import Callable
+from pathlib import Path
+
+import httpx
+import pytest
+from sqlalchemy import Connection, event
+from study_fixture import write_study
+from survey_client import JSON, Participant
+
+from study_server import schema
+from study_server.app import create_app
+from study_server.serve import running, served
+from study_server.web_safety import BODY_LIMIT
+
+
+@pytest.mark.parametrize("path", ["/health", "/admin", "/nothing", "/static/survey.css"])
+def test_every_answer_carries_the_policy(url: str, path: str) -> None:
+    headers = httpx.get(f"{url}{path}").headers
+    assert "script-src 'self'" in headers["content-security-policy"]
+    assert "unsafe" not in headers["content-security-policy"]
+    assert headers["x-content-type-options"] == "nosniff"
+    assert "server" not in headers
+
+
+@pytest.mark.parametrize(
+    ("headers", "status"),
+    [
+        ({"Sec-Fetch-Site": "cross-site"}, 403),
+        ({"Sec-Fetch-Site": "same-site"}, 403),
+        ({"Origin": "https://elsewhere.example"}, 403),
+        ({"Origin": "null"}, 403),
+        ({"Sec-Fetch-Site": "same-origin"}, 303),
+        ({}, 303),
+    ],
+)
+def test_posts_come_from_our_own_pages(url: str, headers: dict[str, str], status: int) -> None:
+    here = Participant(url).here
+    assert httpx.post(f"{url}{here}/consent", headers=headers).status_code == status
+
+
+def test_a_huge_body_is_refused_however_it_comes(url: str) -> None:
+    here = Participant(url).consent().here
+    assert httpx.post(f"{url}{here}/about", data={"age": "x" * BODY_LIMIT}).status_code == 413
+    pieces = (b"age=" + b"x" * 8192 for _ in range(20))
+    form = {"Content-Type": "application/x-www-form-urlencoded"}
+    assert httpx.post(f"{url}{here}/about", content=pieces, headers=form).status_code == 413
+
+
+def test_the_studys_text_is_text(tmp_path: Path) -> None:
+    evil = "<script>alert(1)</script>"
+    study = write_study(tmp_path, title=evil, survey={"consent": evil, "contact": evil})
+    with served(study) as url:
+        page = httpx.get(f"{url}/?STUDY_ID=s&PROLIFIC_PID=%22%3E{evil}", follow_redirects=True).text
+    assert "<script>alert" not in page
+    assert page.count("&lt;script&gt;alert") >= 4
+
+
+def test_a_full_disk_gives_503_and_leaves_nothing_half_done(
+    study: Path, csv_rows: Callable[..., list[dict[str, str]]]
+) -> None:
+    app = create_app(study)
+    room = [0]
+
+    @event.listens_for(app.state.site.database.engine, "begin")
+    def limit(connection: Connection) -> None:
+        pages = connection.exec_driver_sql("PRAGMA page_count").scalar_one()
+        connection.exec_driver_sql(f"PRAGMA max_page_count={pages + room[0]}")
+
+    with running(app) as url, httpx.Client(base_url=url, headers=JSON) as client:
+        started = 0
+        while True:  # until SQLite says that the database or disk is full
+            here = client.get("/", follow_redirects=True).json()["here"]
+            response = client.post(f"{here}/consent")
+            if response.status_code != 303:
+                break
+            started += 1
+        assert response.status_code == 503
+        assert "could not be saved" in response.json()["error"]
+        assert len(csv_rows(study, url, "participants")) == started
+        room[0] = 1000
+        assert client.post(f"{here}/consent").status_code == 303
+        assert len(csv_rows(study, url, "participants")) == started + 1
+        assert len(csv_rows(study, url, "ratings")) == 6 * (started + 1)
+
+
+def test_health_turns_red_when_nothing_can_be_written(study: Path, url: str) -> None:
+    assert httpx.get(f"{url}/health").json()["status"] == "ok"
+    app = create_app(study)
+    with app.state.site.database.writing() as connection:
+        schema.meta.drop(connection)
+    app.state.site.database.engine.dispose()
+    assert httpx.get(f"{url}/health").status_code == 503

@@ -1,0 +1,137 @@
+"""Simulated raters do what they were told: their effects, their number, their leaving."""
+
+from collections.abc import Callable
+from pathlib import Path
+
+import numpy as np
+import pytest
+from study_fixture import write_study
+from survey_client import Participant
+
+from fakesss.problem import BadInput
+from study_server import walk
+from study_server.app import admin_secret
+from study_server.export import mode_to_analyse
+from study_server.manifest import BuiltStudy, load_study
+from study_server.raters import Effects, QuestionEffects, Rater, default_effects, load_effects, shift
+from study_server.serve import served
+from study_server.simulate import quitting, simulate
+
+Exported = Callable[..., list[dict[str, str]]]
+
+
+@pytest.fixture
+def built(tmp_path: Path) -> BuiltStudy:
+    return load_study(write_study(tmp_path / "nine", 9))
+
+
+def test_a_simulation_loses_and_doubles_nothing(url: str, study: Path, exported: Exported) -> None:
+    result = simulate(url, load_study(study), admin_secret(study), started=7, completed=5, seed=2, progress=False)
+    assert list(result) == [
+        "started", "completed", "acknowledged", "stored", "lost", "duplicated", "p50_ms", "p99_ms", "base_url"
+    ]  # fmt: skip
+    assert (result["started"], result["completed"], result["lost"], result["duplicated"]) == (7, 5, 0, 0)
+    assert result["acknowledged"] == result["stored"] == sum(row["rating"] != "" for row in exported())
+    assert sum(person["status"] == "finished" for person in exported("participants")) == 5
+    assert 0 < result["p50_ms"] <= result["p99_ms"]
+
+
+def test_exactly_as_many_stay_as_asked() -> None:
+    quits = quitting(44, 38, 9, seed=1)
+    assert quits.count(None) == 38
+    assert all(quit_after in range(9) for quit_after in quits if quit_after is not None)
+    assert quits != quitting(44, 38, 9, seed=2)
+
+
+def test_counts_that_make_no_sense(study: Path) -> None:
+    with pytest.raises(BadInput, match="--completed 9: must be between 0 and --started 5"):
+        simulate("http://127.0.0.1:9", load_study(study), "", started=5, completed=9)
+
+
+def test_a_server_out_of_reach(study: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(walk, "PATIENCE_S", 0.2)
+    with pytest.raises(BadInput, match="gave no answer"):
+        simulate("http://127.0.0.1:9", load_study(study), "", started=1, completed=1, progress=False)
+
+
+def test_the_same_seed_gives_the_same_answers(built: BuiltStudy) -> None:
+    def answers(seed: int, number: int) -> list[int]:
+        rater = Rater(built, default_effects(built), seed, number)
+        return [rater.rating(stimulus, place, 0) for place, stimulus in enumerate(built.stimuli)]
+
+    assert answers(1, 2) == answers(1, 2)
+    assert len({tuple(answers(seed, number)) for seed in (1, 2) for number in range(4)}) == 8
+
+
+def test_planted_effects_come_out(built: BuiltStudy) -> None:
+    effects = Effects(
+        person_sd=0.5,
+        noise_sd=0.5,
+        question={"translucent": QuestionEffects(levels={"backlight": {"0.8": 1.0, "1.6": -1.0}})},
+    )
+    raters = [Rater(built, effects, 5, number) for number in range(400)]
+    base, more, less = (
+        np.mean([rater.rating(built.by_id[name], place, 0) for rater in raters])
+        for place, name in enumerate(("img04", "img05", "img06"))
+    )
+    assert more - base == pytest.approx(1.0, abs=0.15)
+    assert less - base == pytest.approx(-1.0, abs=0.15)
+    assert {rater.rating(built.by_id["img01"], 0, 1) for rater in raters} <= set(range(1, 8))
+
+
+def test_the_defaults_mirror_the_thesis(built: BuiltStudy) -> None:
+    of_translucent = default_effects(built).question["translucent"]
+    moved = {name: shift(of_translucent, built, stimulus) for name, stimulus in built.by_id.items()}
+    assert moved["img02"] < moved["img01"] < moved["img03"]  # exponents 18, 25, 30
+    assert moved["img06"] < moved["img04"] < moved["img05"]  # backlights 1.6, 1.2, 0.8
+    assert moved["img08"] < moved["img07"] == moved["img09"]  # diffuse weights 0, 0.2, 0.5
+    of_realistic = default_effects(built).question["realistic"]
+    assert shift(of_realistic, built, built.by_id["img03"]) < shift(of_realistic, built, built.by_id["img02"])
+
+
+def test_an_effects_file(tmp_path: Path, built: BuiltStudy) -> None:
+    path = tmp_path / "effects.toml"
+    path.write_text(
+        'noise_sd = 0.0\nperson_sd = 0\n[question.translucent]\nintercept = 3\nslopes = {"material.backlight" = -0.5}\n'
+        '[question.translucent.levels."thickness exponent"]\n18 = -1\n"30.0" = 2\n'
+    )
+    effects = load_effects(path, built)
+    rater = Rater(built, effects, 1, 1)
+    assert [rater.rating(built.by_id[name], 0, 0) for name in ("img01", "img02", "img03")] == [3, 2, 5]
+
+
+@pytest.mark.parametrize(
+    ("text", "sentence"),
+    [
+        ("noise = 1", 'noise: unknown key; did you mean "noise_sd"?'),
+        ("[question.transluscent]", 'asks no such question; did you mean "translucent"?'),
+        (
+            "[question.translucent.slopes]\nbacklit = 1",
+            '"backlit" is no factor of the study; did you mean "backlight"?',
+        ),
+        ("[question.translucent.levels.backlight]\n0.9 = 1", "must"),
+        ('[question.translucent.levels.backlight]\n"0.9" = 1', '"0.9" is no level of it'),
+        ("noise_sd = -1", "noise_sd: -1"),
+        ("noise_sd =", "is not TOML"),
+    ],
+)
+def test_an_effects_file_that_is_wrong(tmp_path: Path, built: BuiltStudy, text: str, sentence: str) -> None:
+    path = tmp_path / "effects.toml"
+    path.write_text(text)
+    with pytest.raises(BadInput) as problem:
+        load_effects(path, built)
+    assert sentence in str(problem.value)
+    assert str(problem.value).startswith(str(path))
+
+
+def test_an_effects_file_that_is_not_there(tmp_path: Path, built: BuiltStudy) -> None:
+    with pytest.raises(BadInput, match="cannot be read"):
+        load_effects(tmp_path / "none.toml", built)
+
+
+def test_simulated_answers_are_analysed_only_where_nobody_took_part(study: Path) -> None:
+    assert mode_to_analyse(study) == "live"
+    for mode in ("pilot", "simulated", "live"):
+        with served(study, mode=mode) as url:  # type: ignore[arg-type]
+            Participant(url).consent()
+        assert mode_to_analyse(study) == {"pilot": "live", "simulated": "simulated", "live": "live"}[mode]
