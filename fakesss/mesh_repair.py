@@ -6,6 +6,7 @@ Not done: holes are not filled and self-intersections are not resolved. Triangle
 they draw nothing, and dropping them would open the surface.
 """
 
+from itertools import combinations
 from typing import Any
 
 import numpy as np
@@ -100,14 +101,23 @@ def half_edges(faces: Faces) -> tuple[NDArray[np.int64], NDArray[np.int8]]:
     return name, np.where(start < end, 1, -1).astype(np.int8)
 
 
-def half_edge_pairs(faces: Faces) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
-    """The two half-edges of every edge that exactly two triangles share."""
-    name, _ = half_edges(faces)
+def half_edge_pairs(faces: Faces, most: int = 2) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
+    """The two half-edges of every edge that exactly two triangles share.
+
+    With `most` above 2 also every pair of opposite half-edges on edges with up to so many triangles.
+    """
+    name, direction = half_edges(faces)
     order = np.argsort(name, kind="stable")
     ordered = name[order]
     starts = np.flatnonzero(np.concatenate([[True], ordered[1:] != ordered[:-1]]))
-    twos = starts[np.diff(np.concatenate([starts, [len(ordered)]])) == 2]
-    return order[twos], order[twos + 1]
+    sizes = np.diff(np.concatenate([starts, [len(ordered)]]))
+    pairs = []
+    for size in range(2, most + 1):
+        corners = order[starts[sizes == size][:, None] + np.arange(size)]
+        left, right = (corners[:, list(side)].ravel() for side in zip(*combinations(range(size), 2), strict=True))
+        opposite = (direction[left] != direction[right]) | (size == 2)
+        pairs.append((left[opposite], right[opposite]))
+    return np.concatenate([left for left, _ in pairs]), np.concatenate([right for _, right in pairs])
 
 
 def is_closed(faces: Faces) -> bool:

@@ -18,7 +18,8 @@ Floats = NDArray[np.float64]
 Floats32 = NDArray[np.float32]
 Faces = NDArray[np.int32]
 
-CREASE_DEGREES = (
+CREASE_DEGREES = 60.0  # between face normals; a box (90) keeps its edges, a coarse scan of a smooth body gets none
+MANY_SIDED = 6  # edges with more triangles than this are hard
     60.0  # between face normals; a box (90) keeps its edges, a coarse scan of a smooth body does not get any
 )
 
@@ -48,8 +49,8 @@ def corner_angles(positions: NDArray[np.floating[Any]], faces: Faces) -> Floats:
 def with_creases(positions: Floats32, faces: Faces) -> tuple[Floats32, Floats32, Faces]:
     """Positions and normals (V', 3) and faces (F, 3), vertices on creases split so that each side has its own normal.
 
-    A crease is an edge where the face normals differ by more than `CREASE_DEGREES`, or one shared by more than two
-    triangles. Where the weighted normals cancel, the vertex takes the normal of one of its triangles, and where none
+    A crease is an edge where the face normals differ by more than `CREASE_DEGREES`; where more than two triangles meet,
+    as on a sheet that was modelled from both sides, each goes on smoothly into those that face like it. Where the weighted normals cancel, the vertex takes the normal of one of its triangles, and where none
     has any area, the direction away from the centre.
     """
     flat = face_normals(positions, faces)
@@ -73,7 +74,7 @@ def with_creases(positions: Floats32, faces: Faces) -> tuple[Floats32, Floats32,
 
 def split_at_creases(vertices: int, faces: Faces, flat: Floats) -> tuple[NDArray[np.int64], Faces]:
     """For each new vertex the old one it copies, and the faces in new vertices; no crease: nothing changes."""
-    half_a, half_b = half_edge_pairs(faces)
+    half_a, half_b = half_edge_pairs(faces, most=MANY_SIDED)
     smooth = (flat[half_a // 3] * flat[half_b // 3]).sum(axis=1) >= np.cos(np.radians(CREASE_DEGREES))
     # a half-edge that no smooth pair joins to a neighbour lies on a crease, a border or a many-sided edge
     joined = np.zeros(faces.size, bool)
