@@ -20,8 +20,6 @@ Faces = NDArray[np.int32]
 
 CREASE_DEGREES = 60.0  # between face normals; a box (90) keeps its edges, a coarse scan of a smooth body gets none
 MANY_SIDED = 6  # edges with more triangles than this are hard
-    60.0  # between face normals; a box (90) keeps its edges, a coarse scan of a smooth body does not get any
-)
 
 
 def normalised(vectors: Floats) -> Floats:
@@ -50,8 +48,9 @@ def with_creases(positions: Floats32, faces: Faces) -> tuple[Floats32, Floats32,
     """Positions and normals (V', 3) and faces (F, 3), vertices on creases split so that each side has its own normal.
 
     A crease is an edge where the face normals differ by more than `CREASE_DEGREES`; where more than two triangles meet,
-    as on a sheet that was modelled from both sides, each goes on smoothly into those that face like it. Where the weighted normals cancel, the vertex takes the normal of one of its triangles, and where none
-    has any area, the direction away from the centre.
+    as on a sheet that was modelled from both sides, each goes on smoothly into those that face like it. Where the
+    weighted normals cancel, the vertex takes the normal of one of its triangles, and where none has any area, the
+    direction away from the centre.
     """
     flat = face_normals(positions, faces)
     origin, faces = split_at_creases(len(positions), faces, flat)
