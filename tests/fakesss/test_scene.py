@@ -1,3 +1,5 @@
+import json
+import re
 from pathlib import Path
 
 import pytest
@@ -60,3 +62,13 @@ def test_every_path_can_be_replaced_by_its_own_value() -> None:
 def test_a_level_out_of_range_names_the_source() -> None:
     with pytest.raises(BadInput, match=r'^study\.toml: factor "t": material\.thickness_exponent: -1'):
         Scene().replace({"material.thickness_exponent": -1}, 'study.toml: factor "t"')
+
+
+def test_the_documented_defaults_are_the_defaults() -> None:
+    page = (Path(__file__).parents[2] / "docs" / "scene.md").read_text(encoding="utf-8")
+    documented = dict(re.findall(r"^\| `([\w.]+)` \| (.*?) \|", page, flags=re.M))
+    for path in scene_paths():
+        value = Scene().model_dump(mode="json")
+        for part in path.split("."):
+            value = value[part]
+        assert documented[path] == ("" if value is None else json.dumps(value)), path
