@@ -7,7 +7,10 @@ from importlib import import_module
 from typing import Any
 
 STATISTICS = {
+    "Equivalence": "analysis.equivalence",
     "Friedman": "analysis.friedman",
+    "IntraclassCorrelation": "analysis.agreement",
+    "KrippendorffAlpha": "analysis.agreement",
     "MeanIntervals": "analysis.intervals",
     "OneWayAnova": "analysis.anova",
     "PairedContrasts": "analysis.contrasts",

@@ -22,6 +22,7 @@ from analysis.tables import (
     table_4_5,
     table_of_pairs,
     table_of_ranks,
+    table_of_raters,
     table_of_retests,
     table_of_tests,
 )
@@ -37,6 +38,7 @@ def render_page(
     plan: AnalysisPlan,
     sample: Sample,
     found: Sequence[Analysed],
+    raters: pd.DataFrame,
     retests: pd.DataFrame,
     said: Sequence[str],
     drawings: Sequence[Drawing],
@@ -57,6 +59,7 @@ def render_page(
         ranks=table_of_ranks(main),
         agreement=agreement_of_tests(main, plan.alpha),
         pairs=table_of_pairs(main, plan.confidence),
+        raters=table_of_raters(raters),
         retests=table_of_retests(retests),
         apa=[apa_sentence(each, plan) for each in main if each.p is not None],
         remarks=said,

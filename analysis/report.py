@@ -13,9 +13,9 @@ from analysis.page import render_page
 from analysis.plan import AnalysisPlan, Mode
 from analysis.provenance import provenance
 from analysis.ratings import DEFAULT_SCALE, read_ratings
+from analysis.reliability import rater_table, retest_table
 from analysis.remarks import remarks
 from analysis.results import Analysed, analyse, anova_table, hsd_table, means_table, tukey_table
-from analysis.retest import retest_table
 from analysis.rows import rows_of
 from analysis.sample import draw_sample
 from analysis.study import StudyInfo, from_ratings, read_manifest
@@ -64,11 +64,14 @@ def write_report(
     main = found[: len(rows)]
     said = [*notes, *remarks(study, plan, sample, frame, main)]
     retests = retest_table(sample.everything, study)
+    raters, more = rater_table(sample, study)
+    said += more
     tables = {
         "anova": anova_table(found),
         "tukey": tukey_table(found),
         "hsd": hsd_table(found),
         "means": means_table(found),
+        "agreement": raters,
         "retest": retests,
     }
     origin = provenance(ratings, frame, study, manifest)
@@ -87,7 +90,7 @@ def write_report(
     drawings = [
         d for d in (factor_figure(study, main, plan.confidence), comparison_figure(study, main, plan.confidence)) if d
     ]
-    page = render_page(study, plan, sample, found, retests, said, drawings, origin)
+    page = render_page(study, plan, sample, found, raters, retests, said, drawings, origin)
     save(out, page, results, tables, drawings)
     return results
 

@@ -1,6 +1,6 @@
 """Tables for the page: every cell as it will be read."""
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Hashable, Iterable, Mapping, Sequence
 from dataclasses import dataclass
 
 import pandas as pd
@@ -171,6 +171,23 @@ def table_of_pairs(found: Iterable[Analysed], confidence: float) -> Table | None
         note="Intervals and p Tukey hold together for all pairs of a row. p Holm: paired t tests, adjusted within it. "
         "d_z: mean difference over the standard deviation of differences.",
     )
+
+
+def table_of_raters(raters: pd.DataFrame) -> Table | None:
+    """Agreement between people, question by question."""
+    rows = tuple(
+        (entry["question"], *(with_interval(entry, name) for name in ("icc_a1", "icc_ak", "alpha")))
+        for entry in raters.to_dict("records")
+    )
+    head = ("Question", "ICC(A,1), one rater", "ICC(A,k), all raters", "Krippendorff’s α, ordinal")
+    note = "95% intervals in brackets; that of α is a bootstrap over pictures."
+    return Table("table-raters", "Agreement between people", head, rows, note=note) if rows else None
+
+
+def with_interval(entry: Mapping[Hashable, float], name: str) -> str:
+    """.290 [.019, .761]"""
+    value, low, high = (no_zero(entry[key], 3) for key in (name, f"{name}_low", f"{name}_high"))
+    return f"{value} [{low}, {high}]"
 
 
 def table_of_retests(retests: pd.DataFrame) -> Table | None:

@@ -29,7 +29,8 @@ def thesis_verdict(difference: float, critical_05: float, critical_01: float) ->
 
 def no_zero(value: float, places: int) -> str:
     """APA: no zero before the point of a number that cannot exceed 1."""
-    return f"{value:.{places}f}".replace("0.", ".", 1) if abs(value) < 1 else f"{value:.{places}f}"
+    text = signed(value, places)
+    return text.replace("0.", ".", 1) if abs(float(f"{value:.{places}f}")) < 1 else text
 
 
 def apa_p(p: float) -> str:

@@ -1,13 +1,39 @@
-"""Pictures shown more than once: how far the same people agree with themselves."""
+"""How far people agree with each other, and with themselves on pictures shown more than once."""
 
 from itertools import combinations
 
 import numpy as np
 import pandas as pd
 
+from analysis.agreement import IntraclassCorrelation, KrippendorffAlpha
 from analysis.labels import natural_order
 from analysis.ratings import is_check, is_repeat
+from analysis.sample import Sample
 from analysis.study import StudyInfo
+from analysis.undefined import Undefined
+
+
+def rater_table(sample: Sample, study: StudyInfo) -> tuple[pd.DataFrame, list[str]]:
+    """A row per question: `icc_a1, icc_a1_low, icc_a1_high` (absolute agreement of one rater), `icc_ak...` (of all),
+    `alpha, alpha_low, alpha_high` (Krippendorff, ordinal), `n_raters, n_targets`; and why a question has none."""
+    entries: list[dict[str, object]] = []
+    notes: list[str] = []
+    for question in study.questions if sample.mode == "repeated" else ():
+        mine = sample.ratings[sample.ratings["question"] == question.name]
+        try:
+            icc = IntraclassCorrelation("rating", "stimulus", "participant")(mine)
+            alpha = KrippendorffAlpha("rating", "stimulus", "participant")(mine).iloc[0]
+        except Undefined as reason:
+            notes.append(f"Agreement on {question.name}: {reason}")
+            continue
+        by_type = {row["type"]: row for row in icc.to_dict("records")}
+        entry: dict[str, object] = {"question": question.name}
+        for name, short in (("ICC(A,1)", "icc_a1"), ("ICC(A,k)", "icc_ak")):
+            row = by_type[name]
+            entry |= {short: row["icc"], f"{short}_low": row["ci_low"], f"{short}_high": row["ci_high"]}
+        entry |= {"alpha": alpha["alpha"], "alpha_low": alpha["ci_low"], "alpha_high": alpha["ci_high"]}
+        entries.append({**entry, "n_raters": row["n_raters"], "n_targets": row["n_targets"]})
+    return pd.DataFrame(entries), notes
 
 
 def retest_table(everything: pd.DataFrame, study: StudyInfo) -> pd.DataFrame:

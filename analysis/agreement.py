@@ -1,0 +1,98 @@
+"""How far people agree about the pictures: intraclass correlation and Krippendorff's alpha."""
+
+import warnings
+from dataclasses import dataclass
+from typing import Literal
+
+import krippendorff
+import numpy as np
+import numpy.typing as npt
+import pandas as pd
+import pingouin
+from pandas.errors import Pandas4Warning
+
+from analysis.undefined import Undefined, complete_table, require_columns
+
+
+@dataclass(frozen=True)
+class IntraclassCorrelation:
+    """The six intraclass correlations of Shrout & Fleiss (1979).
+
+    Returns a row per type in pingouin's naming (`type`: ICC(1,1), ICC(A,1), ICC(C,1), ICC(1,k), ICC(A,k), ICC(C,k)):
+    `icc, ci_low, ci_high` (95%), `F, df1, df2, p, n_targets, n_raters`. ICC(A,1) and ICC(A,k) are absolute agreement
+    of one and of all raters. Raters with a missing cell are left out (`dropped`). Agrees with R `psych::ICC`. Raises
+    `Undefined` where all ratings are equal.
+    """
+
+    value: str
+    target: str
+    rater: str
+
+    def __call__(self, frame: pd.DataFrame) -> pd.DataFrame:
+        """The table for a long `frame`, one row per rating."""
+        wide, dropped = complete_table(frame, self.value, self.target, self.rater)
+        if np.ptp(wide.to_numpy()) == 0:
+            raise Undefined(f"{self.value} by {self.target}: all ratings are equal, so agreement has no value")
+        plain = pd.DataFrame(wide.to_numpy()).rename_axis("rater").reset_index()
+        long = plain.melt("rater", var_name="target", value_name="value")
+        found = unrounded_icc(long)
+        low, high = zip(*found["CI95"], strict=True)
+        names = {"Type": "type", "ICC": "icc", "F": "F", "df1": "df1", "df2": "df2", "pval": "p"}
+        table = found[list(names)].rename(columns=names)
+        table.insert(2, "ci_low", np.array(low, dtype=float))
+        table.insert(3, "ci_high", np.array(high, dtype=float))
+        return table.assign(n_targets=wide.shape[1], n_raters=wide.shape[0], dropped="; ".join(dropped))
+
+
+def unrounded_icc(long: pd.DataFrame) -> pd.DataFrame:
+    """pingouin's table with its confidence limits at full precision (it rounds them to two places by default)."""
+    before = pingouin.options["round.column.CI95"]
+    pingouin.options["round.column.CI95"] = None
+    try:
+        with warnings.catch_warnings():
+            # pingouin 0.7.0 uses inplace arguments that pandas 3.1 announces to remove
+            warnings.filterwarnings("ignore", message="The inplace keyword", category=Pandas4Warning)
+            found = pingouin.intraclass_corr(long, targets="target", raters="rater", ratings="value")
+    finally:
+        pingouin.options["round.column.CI95"] = before
+    return pd.DataFrame(found).reset_index(drop=True)
+
+
+@dataclass(frozen=True)
+class KrippendorffAlpha:
+    """Krippendorff's alpha with a bootstrap interval over the pictures; missing ratings are allowed.
+
+    Returns one row: `alpha, ci_low, ci_high` (95%, percentile), `level, n_targets, n_raters`. `seed` fixes the
+    bootstrap. Agrees with R `irr::kripp.alpha`. Krippendorff (2011). Raises `Undefined` where fewer than two raters
+    share a picture, and where all ratings are equal.
+    """
+
+    value: str
+    target: str
+    rater: str
+    level: Literal["nominal", "ordinal", "interval", "ratio"] = "ordinal"
+    resamples: int = 1000
+    seed: int = 0
+
+    def __call__(self, frame: pd.DataFrame) -> pd.DataFrame:
+        """The row for a long `frame`, one row per rating."""
+        require_columns(frame, self.value, self.target, self.rater)
+        wide = frame.pivot(index=self.rater, columns=self.target, values=self.value).astype(float)
+        data = wide.loc[:, wide.notna().sum() > 1].to_numpy()
+        where = f"{self.value} by {self.target}"
+        if data.size == 0:
+            raise Undefined(f"{where}: no {self.target} was rated by two {self.rater}s, so agreement has no value")
+        if np.nanmin(data) == np.nanmax(data):
+            raise Undefined(f"{where}: all ratings are equal, so agreement has no value")
+        random = np.random.default_rng(self.seed)
+        draws = random.integers(0, data.shape[1], (self.resamples, data.shape[1]))
+        resampled = [self.alpha(data[:, draw]) for draw in draws]
+        low, high = np.nanquantile(resampled, [0.025, 0.975])
+        row = {"alpha": self.alpha(data), "ci_low": float(low), "ci_high": float(high), "level": self.level}
+        return pd.DataFrame([{**row, "n_targets": data.shape[1], "n_raters": data.shape[0]}])
+
+    def alpha(self, data: npt.NDArray[np.float64]) -> float:
+        """Alpha of a raters x pictures table; NaN for a resample of one value only."""
+        if np.nanmin(data) == np.nanmax(data):
+            return float("nan")
+        return float(krippendorff.alpha(reliability_data=data, level_of_measurement=self.level))

@@ -1,0 +1,85 @@
+"""Agreement and equivalence against Shrout & Fleiss (1979), Krippendorff (2011) and R."""
+
+import json
+from pathlib import Path
+
+import numpy as np
+import pandas as pd
+import pytest
+
+from analysis import Equivalence, IntraclassCorrelation, KrippendorffAlpha
+from analysis.undefined import Undefined
+from fakesss.problem import BadInput
+
+DATA = Path(__file__).parents[1] / "data" / "statistics"
+R = json.loads((DATA / "effectsize_tost_padjust_R.json").read_text())
+EXAMPLE = json.loads((DATA / "agreement.json").read_text())["krippendorff_2011"]
+SHROUT_FLEISS = {"ICC(1,1)": 0.166, "ICC(A,1)": 0.290, "ICC(C,1)": 0.715} | {
+    "ICC(1,k)": 0.443, "ICC(A,k)": 0.620, "ICC(C,k)": 0.909,
+}  # fmt: skip
+
+
+def test_shrout_and_fleiss() -> None:
+    """The six coefficients of the paper's example, intervals at full precision."""
+    frame = pd.read_csv(DATA / "shrout_fleiss_1979.csv")
+    table = IntraclassCorrelation(value="score", target="target", rater="judge")(frame).set_index("type")
+    for name, expected in SHROUT_FLEISS.items():
+        assert table.loc[name, "icc"] == pytest.approx(expected, abs=5e-4)
+    # R psych::ICC: .29 [.019, .761]
+    assert tuple(table.loc["ICC(A,1)", ["ci_low", "ci_high"]]) == pytest.approx((0.019, 0.761), abs=1e-3)
+
+
+@pytest.mark.parametrize("level", ["nominal", "ordinal", "interval", "ratio"])
+def test_krippendorff_2011(level: str) -> None:
+    """Section C's example with missing data, at each level of measurement."""
+    cells = [
+        {"rater": rater, "unit": unit, "value": value}
+        for rater, row in enumerate(EXAMPLE["data"])
+        for unit, value in enumerate(row)
+        if value is not None
+    ]
+    statistic = KrippendorffAlpha(value="value", target="unit", rater="rater", level=level, resamples=200)  # type: ignore[arg-type]
+    row = statistic(pd.DataFrame(cells)).iloc[0]
+    assert row["alpha"] == pytest.approx(EXAMPLE["published"][level], abs=5e-4)
+    assert row["ci_low"] < row["alpha"] < row["ci_high"]
+
+
+@pytest.mark.parametrize("case", R["tost_translucency"])
+def test_equivalence_agrees_with_r(case: dict[str, float]) -> None:
+    """Both one-sided p values and the 90% interval."""
+    data = R["tost_translucency_data"]
+    frame = pd.DataFrame(
+        [(who, name, value) for name in ("static", "dynamic") for who, value in enumerate(data[name])],
+        columns=["participant", "condition", "rating"],
+    )
+    frame["condition"] = pd.Categorical(frame["condition"], ["static", "dynamic"])
+    row = Equivalence("rating", "condition", "participant", margin=case["bound"])(frame).iloc[0]
+    for mine, theirs in (("difference", "diff"), ("p_low", "p_low"), ("p_high", "p_high"), ("p_equivalence", "p_tost")):
+        assert row[mine] == pytest.approx(case[theirs], rel=1e-9)
+    assert (row["ci_low"], row["ci_high"]) == pytest.approx(case["ci90"], rel=1e-9)
+    assert row["verdict"] == ("equivalent" if case["bound"] == 0.5 else "undecided")
+
+
+def test_sentences() -> None:
+    """No margin, no spread, no variation."""
+    frame = pd.DataFrame({"who": [1, 1, 2, 2], "what": ["a", "b"] * 2, "value": [3.0, 4, 5, 6]})
+    with pytest.raises(BadInput, match="margin: 0: must be above 0"):
+        Equivalence("value", "what", "who", margin=0)(frame)
+    with pytest.raises(Undefined, match='rates "a" and "b" exactly -1 apart; without spread there is no test'):
+        Equivalence("value", "what", "who", margin=1)(frame)
+    for statistic in (IntraclassCorrelation("value", "what", "who"), KrippendorffAlpha("value", "what", "who")):
+        with pytest.raises(Undefined, match="all ratings are equal, so agreement has no value"):
+            statistic(frame.assign(value=4.0))
+    alone = frame.assign(what=["a", "b", "c", "d"])
+    with pytest.raises(Undefined, match="no what was rated by two whos"):
+        KrippendorffAlpha("value", "what", "who")(alone)
+
+
+def test_the_bootstrap_is_seeded() -> None:
+    """Same seed, same interval."""
+    random = np.random.default_rng(3)
+    frame = pd.DataFrame(
+        [(who, what, random.integers(1, 8)) for who in range(6) for what in range(8)], columns=list("abc")
+    )
+    first, second = (KrippendorffAlpha("c", "b", "a", resamples=50, seed=9)(frame) for _ in range(2))
+    pd.testing.assert_frame_equal(first, second)
