@@ -29,7 +29,7 @@ Pixels = Annotated[int, Field(ge=1, le=16384)]
 class Material(Strict):
     """What the object is made of, as far as the empirical model knows."""
 
-    diffuse: Albedo = Field((0.68, 0.26, 0.05), description="diffuse reflectance [Kd], linear RGB, 0..1")
+    diffuse: Albedo = Field((0.78, 0.24, 0.015), description="diffuse reflectance [Kd], linear RGB, 0..1")
     ambient: NonNegative = Field(1.0, description="ambient reflection coefficient [ka], no unit")
     specular: NonNegative = Field(0.8, description="specular reflection coefficient [ks], no unit")
     shininess: Annotated[float, Field(ge=0, le=1e5)] = Field(100.0, description="Blinn-Phong exponent [n], no unit")
@@ -38,7 +38,7 @@ class Material(Strict):
     )
     backlight: Weight = Field(1.2, description="backlight contribution [wb], no unit")
     diffuse_weight: Weight = Field(0.2, description="added to every channel of the backlight's colour [Kb]")
-    diffuse_contribution: Weight = Field(0.25, description="weight of the diffuse term [wd], no unit")
+    diffuse_contribution: Weight = Field(0.13, description="weight of the diffuse term [wd], no unit")
     specular_contribution: Weight = Field(1.0, description="weight of the specular term [ws], no unit")
 
 
@@ -47,8 +47,8 @@ class Light(Strict):
 
     azimuth: float = Field(-35.0, description="degrees around +y from +z (towards the viewer) to +x (right)")
     elevation: Annotated[float, Field(ge=-90, le=90)] = Field(50.0, description="degrees above the horizon")
-    ambient: Intensity = Field((0.16, 0.17, 0.19), description="ambient intensity [Ia], linear RGB")
-    diffuse: Intensity = Field((0.95, 0.98, 1.0), description="diffuse intensity [Id], linear RGB")
+    ambient: Intensity = Field((0.09, 0.09, 0.095), description="ambient intensity [Ia], linear RGB")
+    diffuse: Intensity = Field((1.0, 1.0, 1.0), description="diffuse intensity [Id], linear RGB")
     specular: Intensity = Field((1.0, 1.0, 1.0), description="specular intensity [Is], linear RGB")
 
 
@@ -107,8 +107,8 @@ class Scene(Strict):
     style: Literal["default", "as published"] = Field(
         "default", description="as published: the 2011 program's deterministic flaws (docs/technique.md)"
     )
-    background: Albedo = Field((0.035, 0.035, 0.035), description="linear RGB behind the object, 0..1")
-    exposure: NonNegative = Field(0.95, description="factor on the object's radiance before display")
+    background: Albedo = Field((0.03, 0.03, 0.03), description="linear RGB behind the object, 0..1")
+    exposure: NonNegative = Field(0.9, description="factor on the object's radiance before display")
     supersampling: Annotated[int, Field(ge=1, le=8)] = Field(3, description="n: n x n samples a pixel, box filter")
     open_surface: Literal["thin", "thick"] = Field(
         "thin", description="thickness of a pixel with no second layer: thin 0 (a sheet), thick 1 (opaque)"
