@@ -165,11 +165,13 @@ def without_idle_inputs(node: Node, wanted: set[str]) -> Node:
 
 
 def why_kept(node: Node, kept: list[Node], targets: tuple[str, ...]) -> str:
+    """Who asks for what the node writes."""
     asked = [f"{resource} is asked for" for resource in node.writes if resource in targets]
     return "; ".join(asked) or f"read by {in_words(readers_of(node, kept))}"
 
 
 def why_culled(node: Node, kept: list[Node], culled: list[Node]) -> str:
+    """Which settings keep the others from reading what the node writes."""
     reasons = [
         f"not read by {other.name}: {why}"
         for other in kept

@@ -63,7 +63,7 @@ def encode_png8(pixels: NDArray[np.uint8]) -> bytes:
 
 
 def write_exr(path: Path, linear: NDArray[Any]) -> None:
-    """OpenEXR, 32-bit float, ZIP; colour is associated with the coverage in A only where the picture has it."""
+    """OpenEXR, 32-bit float, ZIP. RGB is the picture over its background; A, where there is one, is coverage."""
     import OpenEXR  # only for those who ask for it: it loads a large library
 
     channels = {"RGBA" if linear.shape[2] == 4 else "RGB": np.ascontiguousarray(linear, dtype=np.float32)}

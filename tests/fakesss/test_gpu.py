@@ -49,5 +49,9 @@ def test_facts_for_the_manifest(gpu: Gpu) -> None:
 
 
 @pytest.mark.gl
-def test_timer_queries_report_plausible_times(gpu: Gpu) -> None:
-    assert 0 <= warm_up_timer(gpu.context) < 1e9
+def test_a_fresh_contexts_first_times_are_plausible(gpu: Gpu) -> None:
+    times: list[int] = []
+    thread = threading.Thread(target=lambda: times.append(warm_up_timer(shared().context)))
+    thread.start()
+    thread.join()
+    assert 0 <= times[0] < 1e9
