@@ -1,14 +1,10 @@
 // Where and how large the picture stands on the screen, and for how long.
 
 // One file pixel on one device pixel, unless the window is too narrow; then CSS shrinks it and drawn_width_px says so.
+// Where layout leaves the picture between two pixels, browsers move it to the nearest; a transform would blur it.
 export function fitToPixels(image) {
   if (!image) return;
   image.style.width = `${image.naturalWidth / devicePixelRatio}px`;
-  image.style.height = "auto";
-  image.style.transform = "";
-  const { left, top } = image.getBoundingClientRect();
-  const off = (css) => (Math.round(css * devicePixelRatio) - css * devicePixelRatio) / devicePixelRatio;
-  image.style.transform = `translate(${off(left + scrollX)}px, ${off(top + scrollY)}px)`;  // not between two pixels
 }
 
 export function display(image) {
