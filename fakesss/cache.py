@@ -52,8 +52,9 @@ def cached(kind: str, key: dict[str, Any], make: Callable[[], Arrays]) -> tuple[
 def read(path: Path) -> Arrays | None:
     """The arrays of an entry, None where there is none or it is damaged."""
     try:
-        with np.load(path, allow_pickle=False) as file:
-            return {name: file[name] for name in file.files}
+        # opened here: numpy leaves a damaged file open
+        with path.open("rb") as file, np.load(file, allow_pickle=False) as arrays:
+            return {name: arrays[name] for name in arrays.files}
     except FileNotFoundError:
         return None
     except (OSError, ValueError, EOFError, KeyError, BadZipFile) as error:

@@ -79,6 +79,8 @@ def ray_origins(mesh: Mesh) -> Floats32:
         inward[:, axis] = np.bincount(mesh.faces.ravel(), pull, len(inward))
     triangles = np.maximum(np.bincount(mesh.faces.ravel(), minlength=len(inward)), 1)
     inward /= triangles[:, None]
+    # along the surface only: on a curved one the neighbours lie below the vertex
+    inward -= mesh.normals * (inward * mesh.normals).sum(axis=1, keepdims=True)
     length = np.sqrt((inward**2).sum(axis=1, keepdims=True))
     inward *= np.minimum(0.1, CLEARANCE / np.maximum(length, 1e-12))
     return (mesh.positions + CLEARANCE * mesh.normals + inward).astype(np.float32)

@@ -8,10 +8,11 @@ world frame.
 import numpy as np
 from numpy.typing import NDArray
 
+from fakesss.camera import View
 from fakesss.mesh import Mesh, mesh_from_surface
 from fakesss.ray_casting import NOTHING, Caster
 from fakesss.solids import BOX_HALF, TORUS_RADII, sphere
-from fakesss.vertex_normals import face_normals
+from fakesss.vertex_normals import face_normals, normalised
 
 Floats = NDArray[np.float64]
 Interval = tuple[Floats, Floats]
@@ -19,6 +20,17 @@ Interval = tuple[Floats, Floats]
 STEP = 1e-5  # past a hit before looking for the next, in sphere radii: some 40 float32 steps at the surface
 ATTEMPTS = 4  # at a ray that slips between two triangles, each turned by about SLIP radians
 SLIP = 2e-6
+
+
+def camera_rays(view: View, size: tuple[int, int]) -> tuple[Floats, Floats]:
+    """Origins and unit directions through the pixel centres of a picture of `size` (width, height), top row first."""
+    width, height = size
+    across = (np.arange(width) + 0.5) / width * 2 - 1
+    up = 1 - (np.arange(height) + 0.5) / height * 2
+    x, y = (side.ravel() for side in np.meshgrid(across * view.tangent[0], up * view.tangent[1]))
+    right, above, towards = view.rotation
+    directions = x[:, None] * right + y[:, None] * above - towards
+    return np.tile(view.distance * towards, (len(x), 1)), normalised(directions)
 
 
 def thickness(interval: Interval, directions: Floats, forward: Floats) -> Floats:
@@ -94,7 +106,7 @@ def shell_interval(origins: Floats, directions: Floats, outer: float = 1.0, inne
 def box_interval(origins: Floats, directions: Floats, half: tuple[float, float, float] = BOX_HALF) -> Interval:
     """A box at the origin, half sides `half` (Kay and Kajiya, *Ray tracing complex scenes*, 1986)."""
     with np.errstate(divide="ignore", invalid="ignore"):
-        near, far = (np.array(half) * -side / directions - origins / directions for side in (1, -1))
+        near, far = ((side * np.array(half) - origins) / directions for side in (-1, 1))
     entry = np.nanmax(np.minimum(near, far), axis=1)
     leave = np.nanmin(np.maximum(near, far), axis=1)
     missed = entry >= leave
