@@ -11,6 +11,7 @@ from sqlalchemy import (
     Double,
     ForeignKey,
     ForeignKeyConstraint,
+    Index,
     Integer,
     MetaData,
     String,
@@ -54,7 +55,7 @@ sessions = Table(
     Column("id", String, primary_key=True, comment="public: stands in the export; opens nothing"),
     Column("token", String, nullable=False, unique=True, comment="secret: the participant's address"),
     Column("study", String, nullable=False),
-    Column("mode", String, nullable=False, index=True, comment="live, pilot or simulated"),
+    Column("mode", String, nullable=False, comment="live, pilot or simulated"),
     Column("row", Integer, nullable=False, comment="order row reserved at start"),
     Column(
         "step",
@@ -73,6 +74,7 @@ sessions = Table(
     Column("comments", Text),
     ForeignKeyConstraint(["study", "row"], ["order_rows.study", "order_rows.row"]),
     UniqueConstraint("study", "mode", "external_study", "external_participant"),
+    Index("sessions_by_row", "study", "mode", "row"),
 )
 
 presentations = Table(

@@ -1,6 +1,6 @@
 import shutil
 import sys
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from pathlib import Path
 
 import pytest
@@ -25,14 +25,20 @@ QUIET = [
 
 
 @pytest.fixture(scope="session")
-def browser() -> Iterator[Browser]:
-    """A real headless Chromium; without one the tests fail, for they would show nothing."""
+def launch() -> Iterator[Callable[..., Browser]]:
+    """Starts a real headless Chromium with further switches; without one the tests fail: they would show nothing."""
     path = next(filter(None, map(shutil.which, CHROMIUM)), None)
     assert path, f"no browser found: install one of {', '.join(CHROMIUM)}"
     with sync_playwright() as playwright:
-        chromium = playwright.chromium.launch(executable_path=path, args=QUIET)
-        yield chromium
-        chromium.close()
+        yield lambda *switches: playwright.chromium.launch(executable_path=path, args=[*QUIET, *switches])
+
+
+@pytest.fixture(scope="session")
+def browser(launch: Callable[..., Browser]) -> Iterator[Browser]:
+    """One browser for all tests that need no switches of their own."""
+    chromium = launch()
+    yield chromium
+    chromium.close()
 
 
 @pytest.fixture

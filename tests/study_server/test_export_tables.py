@@ -2,19 +2,25 @@
 
 import csv
 import re
+import tomllib
 from collections.abc import Callable
 from pathlib import Path
 
 import pandas as pd
 import pytest
+from pydantic import BaseModel
 from study_fixture import write_study
 from survey_client import Participant
 
 from fakesss.problem import BadInput
 from study_server import schema
+from study_server.answers import Answer, Display, Posted
 from study_server.cells import ROWS_AT_ONCE, cell, csv_text, iso
 from study_server.columns import RATINGS
 from study_server.export import export_ratings
+from study_server.manifest import load_study
+from study_server.raters import Effects, QuestionEffects, default_effects, load_effects
+from study_server.settings import AboutField, Question, Survey, check_survey
 
 DOCS = Path(__file__).parents[2] / "docs"
 Exported = Callable[..., list[dict[str, str]]]
@@ -105,3 +111,24 @@ def test_another_version_of_the_study_is_not_exported_as_this_one(url: str, stud
     write_study(study, survey={"practice": 2})
     with pytest.raises(BadInput, match="another version of this study"):
         export_ratings(study, tmp_path / "out")
+
+
+@pytest.mark.parametrize("model", [Question, AboutField, Survey, Answer, Display, Posted, Effects, QuestionEffects])
+def test_every_key_is_in_the_docs(model: type[BaseModel]) -> None:
+    text = (DOCS / "survey.md").read_text(encoding="utf-8")
+    assert [name for name in model.model_fields if not re.search(rf"\b{name}\b", text)] == []
+
+
+def test_the_effects_in_the_docs_are_the_defaults(tmp_path: Path) -> None:
+    text = (DOCS / "survey.md").read_text(encoding="utf-8")
+    example = next(block for block in re.findall(r"```toml\n(.*?)```", text, re.DOTALL) if "person_sd" in block)
+    path = tmp_path / "effects.toml"
+    path.write_text(example.replace("intercept = 4.0", ""), encoding="utf-8")
+    study = load_study(write_study(tmp_path / "study", 9))
+    assert load_effects(path, study) == default_effects(study)
+
+
+def test_the_study_in_the_docs_is_valid() -> None:
+    text = (DOCS / "survey.md").read_text(encoding="utf-8")
+    example = next(block for block in re.findall(r"```toml\n(.*?)```", text, re.DOTALL) if "[[question]]" in block)
+    assert check_survey(tomllib.loads(example), "docs").survey.about[0].required
