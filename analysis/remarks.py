@@ -76,9 +76,8 @@ def agreement_of_tests(found: Sequence[Analysed], alpha: float) -> str:
     if not both:
         return ""
     apart = [each.row.title for each in both if decides_apart(each, alpha)]
-    if not apart:
-        return f"Means (ANOVA) and ranks (Friedman) lead to the same decision in all {len(both)} rows."
-    return f"Means (ANOVA) and ranks (Friedman) disagree about {joined(apart)}."
+    tests = f"Means (ANOVA) and ranks (Friedman), at the {alpha:.0%} level,"
+    return f"{tests} disagree about {joined(apart)}." if apart else f"{tests} agree in all {len(both)} rows."
 
 
 def decides_apart(each: Analysed, alpha: float) -> bool:

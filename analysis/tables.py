@@ -151,7 +151,7 @@ def table_of_pairs(found: Iterable[Analysed], confidence: float) -> Table | None
             interval = f"[{signed(pair['ci_low'])}, {signed(pair['ci_high'])}]"
             cells = (signed(pair["difference"]), interval, thesis_p(pair["p"]), *paired)
             title = each.row.title if pair["a"] + pair["b"] == "M1M2" else ""
-            rows.append((title, f"{labels[pair['a']]} − {labels[pair['b']]}", *cells))
+            rows.append((title, f"{labels[pair['a']]} minus {labels[pair['b']]}", *cells))
     if not rows:
         return None
     return Table(
