@@ -95,7 +95,7 @@ def choose_columns(header: list[str], columns: Mapping[str, str], path: Path) ->
             chosen[ours] = found
     missing = next((ours for ours in REQUIRED if ours not in chosen), None)
     if missing is not None:
-        raise BadInput(f'{path}: no column "{missing}"; {nearest(missing, header)} (map it with {missing}=NAME)')
+        raise BadInput(f'{path}: no column "{missing}"; {nearest(missing, header)} Rename it in the header line')
     return chosen
 
 

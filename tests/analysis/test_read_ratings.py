@@ -28,7 +28,7 @@ HEAD = "participant,stimulus,question,rating\n"
         (HEAD + "p1,a,q,4\np1,a,q,5\n", 'line 3: participant "p1" rated "a" on "q" twice'),
         (
             "participant,stimulus,question,ratin\n",
-            'no column "rating"; did you mean "ratin"? (map it with rating=NAME)',
+            'no column "rating"; did you mean "ratin"? Rename it in the header line',
         ),
         ("participant,rating,question,rating\n", 'two columns are called "rating"; rename one'),
         ("mode," + HEAD + "pilot,p1,a,q,4\n", "every rating is from a pilot"),
