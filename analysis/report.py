@@ -16,8 +16,8 @@ from analysis.ratings import DEFAULT_SCALE, read_ratings
 from analysis.reliability import rater_table, retest_table
 from analysis.remarks import remarks
 from analysis.results import Analysed, analyse, anova_table, hsd_table, means_table, tukey_table
-from analysis.rows import rows_of
-from analysis.sample import draw_sample
+from analysis.rows import Row, rows_of
+from analysis.sample import Sample, draw_sample
 from analysis.study import StudyInfo, from_ratings, read_manifest
 from fakesss.problem import BadInput
 
@@ -52,20 +52,11 @@ def write_report(
     plan = plan or study.plan
     sample = draw_sample(frame, plan, participants)
     rows, notes = rows_of(study, plan, sample.ratings)
-    modes: tuple[Mode, Mode] = ("repeated", "independent")
-    modes = modes if sample.mode == "repeated" else (modes[1], modes[0])
-    jobs = [(row, mode) for mode in modes for row in rows]
-    tell = progress or (lambda done, total, what: None)
-    found: list[Analysed] = []
-    for done, (row, mode) in enumerate(jobs):
-        tell(done, len(jobs), row.title)
-        found.append(analyse(row, sample, plan, mode))
-    tell(len(jobs), len(jobs), "writing")
+    found = analyse_all(rows, sample, plan, progress)
     main = found[: len(rows)]
-    said = [*notes, *remarks(study, plan, sample, frame, main)]
-    retests = retest_table(sample.everything, study)
     raters, more = rater_table(sample, study)
-    said += more
+    retests = retest_table(sample.everything, study)
+    said = [*notes, *remarks(study, plan, sample, frame, main), *more]
     tables = {
         "anova": anova_table(found),
         "tukey": tukey_table(found),
@@ -75,7 +66,37 @@ def write_report(
         "retest": retests,
     }
     origin = provenance(ratings, frame, study, manifest)
-    results = {
+    results = results_json(study, plan, sample, tables, said, origin)
+    figures = factor_figure(study, main, plan.confidence), comparison_figure(study, main, plan.confidence)
+    drawings = [figure for figure in figures if figure is not None]
+    page = render_page(study, plan, sample, found, raters, retests, said, drawings, origin)
+    save(out, page, results, tables, drawings)
+    return results
+
+
+def analyse_all(rows: Sequence[Row], sample: Sample, plan: AnalysisPlan, progress: Progress | None) -> list[Analysed]:
+    """Every row in the mode the design calls for, then every row in the other."""
+    modes: tuple[Mode, Mode] = ("repeated", "independent")
+    jobs = [(row, mode) for mode in (modes if sample.mode == "repeated" else modes[::-1]) for row in rows]
+    tell = progress or (lambda done, total, what: None)
+    found = []
+    for done, (row, mode) in enumerate(jobs):
+        tell(done, len(jobs), row.title)
+        found.append(analyse(row, sample, plan, mode))
+    tell(len(jobs), len(jobs), "writing")
+    return found
+
+
+def results_json(
+    study: StudyInfo,
+    plan: AnalysisPlan,
+    sample: Sample,
+    tables: Mapping[str, pd.DataFrame],
+    said: list[str],
+    origin: dict[str, str],
+) -> dict[str, Any]:
+    """contract.md's shape, and beside it who was left out, means, agreement and the session."""
+    return {
         "title": study.title,
         "n_started": sample.n_started,
         "n_completed": sample.n_completed,
@@ -87,12 +108,6 @@ def write_report(
         "warnings": said,
         "session": origin,
     }
-    drawings = [
-        d for d in (factor_figure(study, main, plan.confidence), comparison_figure(study, main, plan.confidence)) if d
-    ]
-    page = render_page(study, plan, sample, found, raters, retests, said, drawings, origin)
-    save(out, page, results, tables, drawings)
-    return results
 
 
 def refuse_strangers(study: StudyInfo, frame: pd.DataFrame, ratings: Path) -> None:
