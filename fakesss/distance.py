@@ -21,6 +21,12 @@ SAMPLES = 2  # on each piece of a curve, where the search for its nearest point 
 NEWTON_STEPS = 3
 
 
+def dot(a: Floats, b: Floats) -> Floats:
+    """Scalar products (N,) of the rows of two (N, 3) arrays."""
+    products: Floats = np.einsum("ij,ij->i", a, b)
+    return products
+
+
 def smooth_min(a: Floats, b: Floats, radius: float) -> Floats:
     """Cubic polynomial minimum: curvature stays continuous, nothing changes where |a - b| > `radius`."""
     near = np.maximum(radius - np.abs(a - b), 0) / radius
@@ -53,7 +59,7 @@ class Joined:
             outside = np.maximum(np.maximum(low - points, points - high), 0)
             # farther than this, the part changes nothing; half as far again, since distances are first-order only
             reach = 1.5 * (np.maximum(total if radius > 0 else -total, 0) + abs(radius))
-            near = np.flatnonzero((outside**2).sum(axis=1) <= reach**2)
+            near = np.flatnonzero(dot(outside, outside) <= reach**2)
             distance = part.distance(points[near])
             before = total[near]
             total[near] = smooth_min(before, distance, radius) if radius > 0 else smooth_max(before, -distance, -radius)
@@ -80,8 +86,9 @@ class Ellipsoid:
         if self.axes is not None:
             local = np.einsum("ij,jk->ik", local, self.axes)
         scaled = local / np.array(self.radii)
-        size = np.sqrt((scaled**2).sum(axis=1))
-        slope = np.sqrt(((scaled / np.array(self.radii)) ** 2).sum(axis=1))
+        size = np.sqrt(dot(scaled, scaled))
+        steep = scaled / np.array(self.radii)
+        slope = np.sqrt(dot(steep, steep))
         inner = -min(self.radii) * np.ones_like(size)
         distance: Floats = np.divide(size * (size - 1), slope, out=inner, where=slope > 1e-9)
         return distance
@@ -116,13 +123,14 @@ class Tube:
         for _ in range(NEWTON_STEPS):
             curve, speed, bend = self.at(place)
             away = curve[:, :3] - points
-            speed_squared = (speed[:, :3] ** 2).sum(axis=1)
+            speed_squared = dot(speed[:, :3], speed[:, :3])
             # far from the curve the second derivative of the squared distance may vanish
-            slope = np.maximum(speed_squared + (away * bend[:, :3]).sum(axis=1), 0.25 * speed_squared)
-            step = (away * speed[:, :3]).sum(axis=1) / slope
+            slope = np.maximum(speed_squared + dot(away, bend[:, :3]), 0.25 * speed_squared)
+            step = dot(away, speed[:, :3]) / slope
             place = np.clip(place - np.clip(step, -0.5, 0.5), 0, len(self.pieces))
         curve, _, _ = self.at(place)
-        distance: Floats = np.sqrt(((curve[:, :3] - points) ** 2).sum(axis=1)) - curve[:, 3]
+        away = curve[:, :3] - points
+        distance: Floats = np.sqrt(dot(away, away)) - curve[:, 3]
         return distance
 
     def nearest_sample(self, points: Floats) -> Floats:
@@ -141,7 +149,7 @@ class Tube:
         """The curve (N, 4) and its first two derivatives at parameters (N,) in 0..number of pieces."""
         piece = np.minimum(place.astype(int), len(self.pieces) - 1)
         u = (place - piece)[:, None]
-        a, b, c, d = (self.pieces[piece, power] for power in range(4))
+        a, b, c, d = (np.take(self.pieces[:, power], piece, axis=0) for power in range(4))
         return a + u * (b + u * (c + u * d)), b + u * (2 * c + 3 * u * d), 2 * c + 6 * u * d
 
 

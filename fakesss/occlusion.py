@@ -23,7 +23,7 @@ Floats = NDArray[np.float64]
 Floats32 = NDArray[np.float32]
 Sampling = Literal["cosine", "uniform"]
 
-VERSION = 1  # raised whenever the values change, so that cached ones are made again
+VERSION = 2  # raised whenever the values change, so that cached ones are made again
 CLEARANCE = 5e-4  # from the vertex to where its rays start, in sphere radii: clear of the triangles around it
 GROUPS = 32  # of directions; sums are taken in this order, whatever the number of threads
 

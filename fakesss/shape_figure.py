@@ -67,7 +67,7 @@ field = Joined(
         (mirrored(ARM), 0.06),
         (Tube(CHILD), 0.05),
         (Ellipsoid((0.13, 0.41, 0.28), (0.078, 0.095, 0.085), turned(z=-15)), 0.035),
-        (Tube(CHILD_ARM), 0.035),
+        (Tube(CHILD_ARM), 0.06),
         (Tube(CHILD_LEG), 0.05),
     ]
 )

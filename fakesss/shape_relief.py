@@ -28,6 +28,7 @@ def tile(points: Floats) -> Floats:
     frame = 0.20 * np.exp(-(((edge + 0.07) / 0.055) ** 2))
     from_sun = np.hypot(x + 0.42, y - 0.42)
     rays = 0.012 * np.cos(20 * np.arctan2(y - 0.42, x + 0.42)) * np.clip((from_sun - 0.2) / 0.3, 0, 1)
+    rays *= np.clip(-(edge + 0.14) / 0.15, 0, 1)  # none on the frame
     sun = 0.09 * np.sqrt(np.maximum(1 - (from_sun / 0.19) ** 2, 0))
     hills = -0.52 + 0.04 * np.sin(3.2 * x + 0.6)
     ground = 0.05 / (1 + np.exp((y - hills) / 0.03))

@@ -14,7 +14,7 @@ from fakesss.problem import BadInput, nearest
 
 DEFAULT_FACES = 60_000
 FACES = (1_000, 1_000_000)  # fewest and most triangles that a built-in object is made with
-VERSION = 6  # raised whenever a sculpture changes, so that cached ones are made again
+VERSION = 8  # raised whenever a sculpture changes, so that cached ones are made again
 
 Box = tuple[tuple[float, float, float], tuple[float, float, float]]
 

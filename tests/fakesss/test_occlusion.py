@@ -46,7 +46,7 @@ def test_inside_a_closed_room_no_ray_gets_out(sampling: Sampling) -> None:
 
 
 def test_floor_beside_a_wall() -> None:
-    """A wall of height h at distance d, endless sideways, hides (1 - d / sqrt(h^2 + d^2)) / 2 of the cosine-weighted sky."""
+    """At distance d a long wall of height h hides (1 - d / sqrt(h^2 + d^2)) / 2 of the cosine-weighted sky."""
     floor, floor_faces = plane(40, 1.0)
     height, long = 0.4, 8.0
     wall = np.array([(-0.5, 0, -long), (-0.5, height, -long), (-0.5, height, long), (-0.5, 0, long)])
