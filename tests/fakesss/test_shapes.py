@@ -2,6 +2,8 @@
 
 import numpy as np
 import pytest
+from scipy.sparse import coo_array
+from scipy.sparse.csgraph import connected_components
 
 from fakesss.camera import View
 from fakesss.mesh import Mesh
@@ -43,6 +45,21 @@ def test_closed_outward_and_of_the_asked_size(name: str, faces: int) -> None:
     flat = face_normals(mesh.positions, mesh.faces)
     with_vertex = (flat * mesh.normals[mesh.faces].mean(axis=1)).sum(axis=1)
     assert (with_vertex < 0).mean() < 1e-3, "normals agree with the winding but for a few slivers"
+
+
+@pytest.mark.parametrize("name", ORGANIC)
+def test_one_piece_without_bubbles(name: str) -> None:
+    """A closed hollow inside would end the first interval where no eye expects it."""
+    faces = load_object(f"{name}:30000").faces
+    vertices = int(faces.max()) + 1
+    edges = coo_array((np.ones(faces.size), (faces.ravel(), np.roll(faces, 1, axis=1).ravel())), shape=(vertices,) * 2)
+    assert connected_components(edges, directed=False)[0] == 1
+
+
+def test_the_figure_has_holes() -> None:
+    faces = load_object("figure:30000").faces
+    holes = (2 - (int(faces.max()) + 1 - len(faces) / 2)) / 2  # Euler: V - E + F = 2 - 2 holes
+    assert holes >= 3
 
 
 @pytest.mark.parametrize("name", ["shell", "knot", "torus"])
