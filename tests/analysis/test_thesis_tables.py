@@ -6,6 +6,7 @@ from pathlib import Path
 
 import pandas as pd
 import pytest
+from thesis_study import COMPARISON, thesis_stimuli, write_manifest
 
 from analysis.plan import AnalysisPlan
 from analysis.ratings import read_ratings
@@ -40,10 +41,11 @@ TABLE_4_5 = [
 ]
 
 
-@pytest.fixture(params=list(FIXTURES))
-def found(request: pytest.FixtureRequest, thesis_manifest: Path) -> list[Analysed]:
+@pytest.fixture(scope="module", params=list(FIXTURES))
+def found(request: pytest.FixtureRequest, tmp_path_factory: pytest.TempPathFactory) -> list[Analysed]:
     """All rows of one fixture, analysed in the mode it was shaped for."""
-    study = read_manifest(thesis_manifest)
+    folder = tmp_path_factory.mktemp("thesis")
+    study = read_manifest(write_manifest(folder / "study", thesis_stimuli(), {"comparison": [COMPARISON]}))
     sample = draw_sample(read_ratings(DATA / f"{FIXTURES[request.param]}.csv"), study.plan)
     rows, notes = rows_of(study, study.plan, sample.ratings)
     assert not notes
