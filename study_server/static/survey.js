@@ -27,10 +27,12 @@ async function follow(state) {
   if (state.step !== firstStep) return location.replace(form.dataset.here);
   document.getElementById("count").textContent = `${state.practice ? "Practice " : ""}${state.trial} of ${state.trials}`;
   document.getElementById("progress").value = state.trial - 1;
+  stage.style.minHeight = `${state.picture.height / devicePixelRatio}px`;  // words take the picture's place
   const image = await undamaged(state.picture);
   for (const radio of form.querySelectorAll("input")) radio.checked = false;
   rtMs = questions.map(() => null);
   stage.replaceChildren(image);
+  stage.style.minHeight = "";
   fitToPixels(image);
   await watch.start();
   trial = { ...state, submission: newName(), sha256: image.dataset.sha256 };

@@ -1,6 +1,5 @@
 """Starting, stopping, killing: nobody is lost, and what cannot be served says so in one sentence."""
 
-import os
 import signal
 import socket
 import subprocess
@@ -45,10 +44,10 @@ def free_port() -> int:
         return int(probe.getsockname()[1])
 
 
-@pytest.mark.parametrize("kills", [3, pytest.param(100, marks=[pytest.mark.long, pytest.mark.timeout(1200)])])
+@pytest.mark.parametrize("kills", [2, pytest.param(100, marks=[pytest.mark.long, pytest.mark.timeout(1200)])])
 def test_killed_under_load_every_acknowledged_rating_is_there_once(tmp_path: Path, kills: int) -> None:
     study, port = write_study(tmp_path, 9), free_port()
-    raters = 8 + kills
+    raters = 12 + 8 * kills
     result: dict[str, Any] = {}
 
     def run() -> None:
@@ -63,7 +62,7 @@ def test_killed_under_load_every_acknowledged_rating_is_there_once(tmp_path: Pat
     killed = 0
     try:
         while load.is_alive() and killed < kills:
-            time.sleep(0.25 + 0.01 * (killed % 7))
+            time.sleep(0.08 + 0.01 * (killed % 7))
             process.send_signal(signal.SIGKILL)
             process.wait()
             killed += 1
@@ -72,7 +71,7 @@ def test_killed_under_load_every_acknowledged_rating_is_there_once(tmp_path: Pat
     finally:
         process.kill()
         process.wait()
-    assert killed >= min(kills, 2)
+    assert killed == kills  # the load lasted
     assert (result["started"], result["completed"]) == (raters, raters - 2)
     assert (result["lost"], result["duplicated"]) == (0, 0)
     assert result["stored"] >= result["acknowledged"] >= (raters - 2) * 18
@@ -102,13 +101,6 @@ def test_a_port_that_is_none(study: Path) -> None:
 def test_a_folder_that_cannot_be_written(study: Path) -> None:
     (study / "ratings.sqlite").mkdir()
     with pytest.raises(BadInput, match=r"ratings\.sqlite: cannot be opened for writing"):
-        create_app(study)
-
-
-@pytest.mark.skipif(os.geteuid() == 0, reason="root may write anywhere")
-def test_a_folder_without_the_right_to_write(study: Path) -> None:
-    study.chmod(0o500)
-    with pytest.raises(BadInput, match="cannot be opened for writing"):
         create_app(study)
 
 
