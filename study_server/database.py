@@ -95,9 +95,10 @@ def prepare_sqlite(connection: Any, _record: Any) -> None:
     """Pragmas of every new SQLite connection.
 
     synchronous=FULL makes a commit wait for the disk: without it a rating could be acknowledged and lost.
+    secure_delete overwrites what a withdrawal deletes.
     """
     connection.isolation_level = None  # the driver must not begin transactions by itself
-    for pragma in ("journal_mode=WAL", "synchronous=FULL", "foreign_keys=ON"):
+    for pragma in ("journal_mode=WAL", "synchronous=FULL", "foreign_keys=ON", "secure_delete=ON"):
         connection.execute(f"PRAGMA {pragma}")
 
 

@@ -147,7 +147,11 @@ def expected_and_stored(connection: Connection, session: str, questions: int) ->
 
 
 def withdraw(connection: Connection, session: RowMapping, now: float) -> None:
-    """Delete everything the participant said; what stays is that there was a session, and how much was deleted."""
+    """Delete what the participant said and who they are elsewhere.
+
+    What stays is that there was a session, and how much was deleted. An external person who returns is still known,
+    for their token follows from their name.
+    """
     deleted = 0
     for table in (schema.revisions, schema.ratings, schema.events):
         gone = connection.execute(table.delete().where(table.c.session == session["id"]))
@@ -157,4 +161,5 @@ def withdraw(connection: Connection, session: RowMapping, now: float) -> None:
     mine = presentations.session == session["id"]
     connection.execute(update(schema.presentations).where(mine).values(dict.fromkeys(facts)))
     connection.execute(insert(schema.withdrawals).values(session=session["id"], at=now, ratings_deleted=deleted))
-    advance(connection, session, now, step="withdrawn", about={}, comments=None, external_session=None)
+    forgotten = dict.fromkeys(("comments", "external_study", "external_participant", "external_session"))
+    advance(connection, session, now, step="withdrawn", about={}, **forgotten)

@@ -17,7 +17,7 @@ from survey_client import JSON, Participant
 from fakesss.problem import BadInput
 from study_server.app import admin_secret, create_app
 from study_server.manifest import load_study
-from study_server.serve import listening, serve, served
+from study_server.serve import announce, listening, serve, served
 from study_server.simulate import simulate
 
 PROGRAM = "import sys; from pathlib import Path; from study_server.serve import serve; "
@@ -91,6 +91,25 @@ def test_a_port_in_use(study: Path) -> None:
         port = taken.getsockname()[1]
         with pytest.raises(BadInput, match=rf"127\.0\.0\.1:{port}: cannot be listened on .*; choose another"):
             serve(study, port=port)
+
+
+def test_the_survey_needs_no_renderer() -> None:
+    program = "import sys, study_server.serve, study_server.simulate; print(*sys.modules)"
+    loaded = subprocess.run([sys.executable, "-c", program], capture_output=True, text=True, check=True).stdout.split()
+    assert {name for name in loaded if name.startswith("fakesss")} == {"fakesss", "fakesss.problem"}
+    assert not {"moderngl", "embreex", "trimesh", "stimuli", "analysis"} & set(loaded)
+
+
+@pytest.mark.parametrize(
+    ("host", "warns"), [("127.0.0.1", False), ("localhost", False), ("::1", False), ("0.0.0.0", True)]
+)
+def test_what_is_printed_at_the_start(study: Path, capsys: pytest.CaptureFixture[str], host: str, warns: bool) -> None:
+    announce(create_app(study), host, "http://127.0.0.1:8000")
+    said = capsys.readouterr()
+    assert said.out == ""
+    assert "http://127.0.0.1:8000/admin" in said.err
+    assert admin_secret(study) in said.err
+    assert ("HTTPS" in said.err) is warns
 
 
 def test_a_port_that_is_none(study: Path) -> None:

@@ -1,7 +1,9 @@
 """One participant against a real server and a real database: nothing lost, nothing doubled, no wrong picture."""
 
+import sqlite3
 from collections.abc import Callable
 from concurrent.futures import ThreadPoolExecutor
+from contextlib import closing
 from pathlib import Path
 
 import httpx
@@ -179,6 +181,17 @@ def test_a_withdrawal_deletes_and_leaves_its_mark(url: str, exported: Exported) 
     assert exported() == []
     [who] = exported("participants")
     assert (who["status"], who["ratings"], who["about_age"]) == ("withdrawn", "0", "")
+
+
+def test_who_withdrew_is_forgotten_but_cannot_begin_again(url: str, study: Path, exported: Exported) -> None:
+    query = "?STUDY_ID=s1&PROLIFIC_PID=a-name-to-forget&SESSION_ID=x"
+    person = Participant(url, query).to_trials()
+    person.post("withdraw", sure="yes")
+    assert Participant(url, query).state["step"] == "withdrawn"
+    assert len(exported("participants")) == 1
+    with closing(sqlite3.connect(study / "ratings.sqlite")) as connection:
+        connection.execute("PRAGMA wal_checkpoint(TRUNCATE)")
+    assert b"a-name-to-forget" not in (study / "ratings.sqlite").read_bytes()
 
 
 def test_nothing_asked_but_the_pictures(tmp_path: Path) -> None:
