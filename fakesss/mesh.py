@@ -53,7 +53,7 @@ def load_mesh(path: str | Path) -> Mesh:
 
     A file of several parts is taken as one object, each part where the file's transforms put it. Materials and stored
     normals are not read, nor is any other file. Raises `BadInput` if the file is missing, of another kind,
-    unreadable, or holds no triangle with finite corners.
+    unreadable, has a triangle with a corner that is not finite, or holds no triangle.
     """
     path = Path(path)
     kind = path.suffix.lower().removeprefix(".")
@@ -98,8 +98,12 @@ def mesh_from_triangles(positions: Floats, faces: NDArray[np.integer[Any]], sour
     """
     repairs: list[str] = []
     faces = mesh_repair.drop_unusable_faces(positions, faces, repairs)
+    lost = np.unique(faces[~np.isfinite(positions[faces]).all(axis=2)])
+    if len(lost):  # dropping their triangles would tear holes into the shape that is studied
+        count = mesh_repair.counted(len(lost), "vertex is", "vertices are")
+        raise BadInput(f"{source}: {count} not finite (NaN or infinity); repair the mesh or export it again")
     if not len(faces):
-        raise BadInput(f"{source}: no triangle with finite corners and an extent is left; repair or export it again")
+        raise BadInput(f"{source}: no triangle with an extent is left; repair the mesh or export it again")
     scaled, centre, radius = into_unit_sphere(positions, faces)
     single, faces32 = mesh_repair.weld(scaled, faces, repairs)
     if not len(faces32):

@@ -1,6 +1,6 @@
 """What is mended in a mesh on loading, and the sentences that say so.
 
-Done: triangles with a corner that is not finite or with two equal corners are dropped, vertices at one place become
+Done: triangles with a corner that is not there or with two equal corners are dropped, vertices at one place become
 one, copies of a triangle are dropped, neighbours are wound alike, closed surfaces are turned outwards.
 Not done: holes are not filled and self-intersections are not resolved. Triangles whose corners lie on a line stay:
 they draw nothing, and dropping them would open the surface.
@@ -25,19 +25,13 @@ def counted(number: int, one: str, many: str) -> str:
 
 
 def drop_unusable_faces(positions: Floats, faces: Indices, repairs: list[str]) -> Indices:
-    """The faces whose corners exist, are finite and are three different points."""
+    """The faces whose corners exist and are three different points."""
     known = ((faces >= 0) & (faces < len(positions))).all(axis=1)
     if not known.all():
         repairs.append(
             f"Dropped {counted(int((~known).sum()), 'triangle', 'triangles')} naming vertices that are not there."
         )
         faces = faces[known]
-    finite = np.isfinite(positions[faces]).all(axis=(1, 2))
-    if not finite.all():
-        repairs.append(
-            f"Dropped {counted(int((~finite).sum()), 'triangle', 'triangles')} with NaN or infinite corners."
-        )
-        faces = faces[finite]
     a, b, c = (positions[faces[:, corner]] for corner in range(3))
     collapsed = (a == b).all(axis=1) | (b == c).all(axis=1) | (c == a).all(axis=1)
     if collapsed.any():
