@@ -25,7 +25,7 @@ from fakesss.texture_pool import TexturePool
 REQUIRED = 330
 MEND = "install it with `apt-get install libegl1 libgl1 libgl1-mesa-dri` (Debian, Ubuntu) or the card's own driver"
 EXPLICIT_NAMES = {"libgl": "libGL.so.1", "libegl": "libEGL.so.1"}
-UPLOADS_KEPT = 16  # buffers: a few meshes in a few poses, so that a sweep uploads nothing twice
+UPLOADS_KEPT = 16  # buffers: a few meshes, so that a sweep uploads nothing twice
 
 
 @dataclass
@@ -40,7 +40,7 @@ class Gpu:
     def __post_init__(self) -> None:
         self.programs = Programs(self.context)
         self.pool = TexturePool(self.context)
-        self.uploads = Recent(UPLOADS_KEPT, dispose=lambda buffer: buffer.release())
+        self.uploads = Recent(UPLOADS_KEPT, dispose=lambda upload: upload.release())
 
     @property
     def renderer(self) -> str:
