@@ -9,7 +9,7 @@ from markupsafe import Markup
 
 from analysis.figures import Drawing, thumbnail_uri
 from analysis.plan import AnalysisPlan, Exclusions
-from analysis.remarks import agreement_of_tests, is_simulated
+from analysis.remarks import agreement_of_tests, not_live
 from analysis.results import METHODS, Analysed
 from analysis.rows import level_text
 from analysis.sample import Sample
@@ -51,7 +51,7 @@ def render_page(
         study=study,
         plan=plan,
         sample=sample,
-        simulated=is_simulated(sample.everything),
+        not_live=not_live(sample.everything),
         rules=declared_rules(plan.exclude),
         method=METHODS[sample.mode],
         findings=findings(study, main, plan),

@@ -31,13 +31,13 @@ ALIASES = {
     "rating": ("rating", "response", "score", "answer"),
 }
 DEFAULT_SCALE = 7
-SIMULATED = "simulated"
+MODES = ("live", "simulated", "pilot")
 
 
 def read_ratings(
     path: str | Path, columns: Mapping[str, str] | None = None, scale: int | Mapping[str, int] | None = DEFAULT_SCALE
 ) -> pd.DataFrame:
-    """The live (else the simulated) ratings in `path`, sorted by participant, stimulus and question (natural order).
+    """The ratings of one mode in `path`, sorted by participant, stimulus and question (natural order).
 
     `columns` maps our names to the file's (`{"stimulus": "photo"}`); the aliases in `ALIASES` need no mapping. `scale`
     is the highest answer, for all questions or for each; None allows any finite number. Returns `participant,
@@ -52,7 +52,7 @@ def read_ratings(
     if frame.empty:
         raise BadInput(f"{path}: has a header but no ratings; export again after people have answered")
     refuse_empty_labels(frame, path)
-    frame = of_one_mode(frame, path)
+    frame = of_one_mode(frame).copy()
     frame["rating"] = numeric_ratings(frame, scale, path)
     if "rt_ms" in frame:
         frame["rt_ms"] = pd.to_numeric(frame["rt_ms"], errors="coerce")
@@ -108,22 +108,13 @@ def refuse_empty_labels(frame: pd.DataFrame, path: Path) -> None:
             raise BadInput(f"{path}: line {empty[0] + 2}: {name} is empty; fill it in or delete the line")
 
 
-def of_one_mode(frame: pd.DataFrame, path: Path) -> pd.DataFrame:
-    """The live answers; simulated ones only where there is no live one; pilot answers never."""
-    kept = live_else_simulated(frame)
-    if kept.empty:
-        raise BadInput(
-            f"{path}: every rating is from a pilot; collect live ratings, or drop the column mode to analyse these"
-        )
-    return kept.copy()
-
-
-def live_else_simulated(frame: pd.DataFrame) -> pd.DataFrame:
-    """The rows of people's sessions; those of simulated raters where there is no other; all where no mode is noted."""
+def of_one_mode(frame: pd.DataFrame) -> pd.DataFrame:
+    """The rows of the first of `MODES` that occurs, all where none is noted: modes are never analysed together."""
     if "mode" not in frame:
         return frame
-    live = frame[frame["mode"].isin(["live", ""])]
-    return frame[frame["mode"] == SIMULATED] if live.empty else live
+    mode = frame["mode"].replace("", "live")
+    present = next((known for known in MODES if (mode == known).any()), None)
+    return frame[mode == present].assign(mode=present) if present is not None else frame
 
 
 def numeric_ratings(frame: pd.DataFrame, scale: int | Mapping[str, int] | None, path: Path) -> "pd.Series[float]":

@@ -5,11 +5,15 @@ from collections.abc import Sequence
 import pandas as pd
 
 from analysis.plan import BEST, AnalysisPlan
-from analysis.ratings import SIMULATED
 from analysis.results import Analysed
 from analysis.sample import Sample
 from analysis.study import StudyInfo
 from analysis.wording import counted, joined
+
+NOT_LIVE = {
+    "simulated": "These answers are simulated: programs gave them, not people.",
+    "pilot": "These answers are from a pilot of the study.",
+}
 
 
 def remarks(
@@ -17,8 +21,8 @@ def remarks(
 ) -> list[str]:
     """Warnings in the order of their weight. `found`: the default mode's analyses."""
     said = [sentence for each in found for sentence in each.trouble]
-    if is_simulated(ratings):
-        said.insert(0, "These answers are simulated: programs gave them, not people.")
+    if not_live(ratings):
+        said.insert(0, not_live(ratings))
     said += design_remarks(study, sample, ratings)
     said += [sentence for each in found for sentence in row_remarks(each)]
     if any(BEST in comparison.stimuli for comparison in plan.comparison):
@@ -35,9 +39,10 @@ def remarks(
     return said
 
 
-def is_simulated(ratings: pd.DataFrame) -> bool:
-    """Whether the ratings come from `fakesss simulate`."""
-    return "mode" in ratings and bool((ratings["mode"] == SIMULATED).all())
+def not_live(ratings: pd.DataFrame) -> str:
+    """A sentence on answers that no study may be published with; empty for live ones."""
+    mode = ratings["mode"].iloc[0] if "mode" in ratings and len(ratings) else "live"
+    return NOT_LIVE.get(mode, "")
 
 
 def row_remarks(each: Analysed) -> list[str]:

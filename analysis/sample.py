@@ -7,7 +7,7 @@ import pandas as pd
 
 from analysis.labels import natural_order
 from analysis.plan import AnalysisPlan, Exclusions, Mode
-from analysis.ratings import is_check, is_repeat, live_else_simulated
+from analysis.ratings import is_check, is_repeat, of_one_mode
 from fakesss.problem import BadInput
 
 FINISHED = ("completed", "complete", "finished", "true", "yes", "1")
@@ -91,7 +91,7 @@ def people(
 
 
 def read_participants(path: Path) -> tuple[list[str], set[str] | None]:
-    """Live (else simulated) participants in a CSV, and those who finished (None where the file does not say)."""
+    """The participants of one mode in a CSV, and those who finished (None where the file does not say)."""
     try:
         frame = pd.read_csv(path, dtype=str, keep_default_na=False, encoding="utf-8-sig")
     except FileNotFoundError:
@@ -100,7 +100,7 @@ def read_participants(path: Path) -> tuple[list[str], set[str] | None]:
         raise BadInput(f"{path}: cannot be read ({error}); it must be a CSV file in UTF-8") from None
     if "participant" not in frame:
         raise BadInput(f'{path}: no column "participant"; export the participants again')
-    frame = live_else_simulated(frame)
+    frame = of_one_mode(frame)
     column = next((name for name in FINISHED_COLUMNS if name in frame), None)
     if column is None:
         return list(frame["participant"]), None

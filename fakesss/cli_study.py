@@ -7,6 +7,7 @@ from pathlib import Path
 from typing import Any, Literal
 
 import click
+from tqdm import tqdm
 
 from fakesss.cli import AS_JSON, commands, done, say
 
@@ -217,8 +218,8 @@ def report_study(study: Path, out: Path, database: str | None, mode: Mode) -> di
 
 
 def report_folder(study: Path, database: str | None, mode: Mode) -> Path:
-    """The report as the admin page shows it, written now."""
-    out = study / "report"
+    """The report as the admin page shows it, written now; a pilot's lies apart."""
+    out = study / "report" if mode == "live" else study / "report" / mode
     report_study(study, out, database, mode)
     return out
 
@@ -228,4 +229,10 @@ def write(ratings: Path, out: Path, study: Path, participants: Path | None) -> d
     from analysis.report import write_report
     from stimuli.manifest import manifest_path
 
-    return write_report(ratings, out, manifest=manifest_path(study), participants=participants)
+    with tqdm(desc="analyses", unit="analysis", disable=None) as bar:
+
+        def tell(done: int, total: int, what: str) -> None:
+            bar.total, bar.n = total, done
+            bar.set_postfix_str(what)
+
+        return write_report(ratings, out, manifest=manifest_path(study), participants=participants, progress=tell)

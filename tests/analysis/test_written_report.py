@@ -216,12 +216,13 @@ def test_compared_pictures_without_a_declared_comparison(tmp_path: Path) -> None
     assert names == {"translucent: others vs ours", "realistic: others vs ours", "varnished: others vs ours"}
 
 
-def test_simulated_raters_are_named_as_such(csv_of: Callable[[str], Path], tmp_path: Path) -> None:
-    """Their answers are analysed where there are no others, and the first warning says so."""
+@pytest.mark.parametrize("mode", ["simulated", "pilot"])
+def test_answers_that_are_not_live_are_named_as_such(csv_of: Callable[[str], Path], tmp_path: Path, mode: str) -> None:
+    """They are analysed where there are no others, and the first warning says so."""
     head, *rows = ratings_of({f"img0{i}": (lambda who, i=i: 1 + (who * i) % 7) for i in (1, 2, 3)}, 6).splitlines()
-    simulated = [f"simulated,{row}" for row in rows]
-    results = write_report(csv_of("\n".join([f"mode,{head}", *simulated])), tmp_path / "out")
-    assert results["n_analysed"] == 6 and "simulated" in results["warnings"][0]
+    other = [f"{mode},{row}" for row in rows]
+    results = write_report(csv_of("\n".join([f"mode,{head}", *other])), tmp_path / "out")
+    assert results["n_analysed"] == 6 and mode in results["warnings"][0]
     live = [f"live,{row.replace('p', 'person', 1)}" for row in rows[:12]]
-    results = write_report(csv_of("\n".join([f"mode,{head}", *simulated, *live])), tmp_path / "out")
-    assert results["n_analysed"] == 4 and not any("simulated" in said for said in results["warnings"])
+    results = write_report(csv_of("\n".join([f"mode,{head}", *other, *live])), tmp_path / "out")
+    assert results["n_analysed"] == 4 and not any(mode in said for said in results["warnings"])
