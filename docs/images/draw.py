@@ -1,0 +1,55 @@
+"""Draws the pictures of the documentation again: `python docs/images/draw.py`."""
+
+import tempfile
+from pathlib import Path
+
+from PIL import Image, ImageDraw, ImageFont
+
+from fakesss.colour import to_8bit
+from fakesss.renderer import render
+from fakesss.scene import Scene
+from fakesss.shapes import names
+from stimuli.build import build
+from stimuli.template import write_template
+
+HERE = Path(__file__).parent
+INK, PAPER = (40, 40, 40), (255, 255, 255)
+GAP, CAPTION = 8, 30
+
+
+def sheet(pictures: list[tuple[str, Image.Image]], columns: int) -> Image.Image:
+    """Captioned pictures of one size in rows."""
+    width, height = pictures[0][1].size
+    rows = -(-len(pictures) // columns)
+    page = Image.new("RGB", (columns * (width + GAP) - GAP, rows * (height + CAPTION + GAP) - GAP), PAPER)
+    pen, font = ImageDraw.Draw(page), ImageFont.load_default(15)
+    for place, (caption, picture) in enumerate(pictures):
+        x, y = place % columns * (width + GAP), place // columns * (height + CAPTION + GAP)
+        page.paste(picture, (x, y))
+        pen.text((x + 2, y + height + 5), caption, INK, font)
+    return page
+
+
+def thesis_stimuli(edge: int = 300) -> Image.Image:
+    """The nine pictures of the thesis template, one row a factor."""
+    with tempfile.TemporaryDirectory() as folder:
+        write_template(Path(folder), "thesis")
+        entries = build(Path(folder))["stimuli"]
+        shown = []
+        for entry in entries:
+            picture = Image.open(Path(folder) / "stimuli" / entry["file"]).convert("RGB")
+            same = f"  (= {entry['same_picture_as']})" if entry["same_picture_as"] else ""
+            caption = f"{entry['id']}  {entry['label']}{same}"
+            shown.append((caption, picture.resize((edge, edge), Image.Resampling.LANCZOS)))
+    return sheet(shown, 3)
+
+
+def objects(edge: int = 300) -> Image.Image:
+    """Every built-in object in the default scene."""
+    drawn = [(name, render(Scene(object=name, size=(edge, edge)))) for name in names()]
+    return sheet([(name, Image.fromarray(to_8bit(image[..., :3]))) for name, image in drawn], 3)
+
+
+if __name__ == "__main__":
+    for name, page in (("thesis-stimuli", thesis_stimuli()), ("objects", objects())):
+        page.save(HERE / f"{name}.png", optimize=True)
