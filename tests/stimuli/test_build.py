@@ -3,7 +3,6 @@
 import hashlib
 import io
 import json
-import os
 import shutil
 from pathlib import Path
 from typing import Any
@@ -150,5 +149,5 @@ def test_a_picture_of_another_size_is_refused(folder: Path) -> None:
 def test_a_study_can_be_copied(folder: Path, tmp_path: Path) -> None:
     build(folder)
     shutil.copytree(folder, tmp_path / "copy")
-    os.rename(folder, tmp_path / "gone")
+    folder.rename(tmp_path / "gone")
     assert verify(tmp_path / "copy") == []
