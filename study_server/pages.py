@@ -32,7 +32,7 @@ def consent_page(study: BuiltStudy, mode: str, token: str, external: External | 
 
 def frame(study: BuiltStudy, mode: str, token: str, step: str) -> dict[str, Any]:
     """What every page of a participant has."""
-    return {"step": step, "title": study.title, "mode": mode, "here": f"/s/{token}"}
+    return {"step": step, "title": study.settings.survey.title or study.title, "mode": mode, "here": f"/s/{token}"}
 
 
 def page(connection: Connection, study: BuiltStudy, session: RowMapping) -> dict[str, Any]:

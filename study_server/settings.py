@@ -78,6 +78,7 @@ ABOUT = (
 class Survey(Strict):
     """The `[survey]` table. Every key has a default, so the table may be missing."""
 
+    title: str = Field("", description="what participants see as the study's name; empty: the study's own title")
     consent: Text = Field(CONSENT, description="shown first; paragraphs are separated by an empty line")
     contact: str = Field("", description="whom participants can write to; shown under the consent text")
     retention: str = Field("", description="how long answers are kept; shown under the consent text")

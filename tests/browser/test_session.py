@@ -97,6 +97,7 @@ def test_opening_the_link_again_offers_the_way_back(page: Page, context: Browser
     again.goto(url)
     again.locator("#resume a").click()
     answerable(again, "1 of 3")
+    assert again.url == page.url
 
 
 def test_pages_that_need_javascript_say_so_without_it(url: str) -> None:

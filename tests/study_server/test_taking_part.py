@@ -218,3 +218,11 @@ def test_a_picture_changed_on_disk_is_not_sent(study: Path, url: str) -> None:
     response = person.client.get(person.state["picture"]["url"])
     assert response.status_code == 503
     assert "damaged" in response.json()["error"]
+
+
+def test_participants_read_the_title_that_is_meant_for_them(tmp_path: Path) -> None:
+    study = write_study(tmp_path / "study", survey={"title": "How does this object look?"})
+    with served(study) as url:
+        person = Participant(url)
+        person.consent()
+        assert person.state["title"] == "How does this object look?"
