@@ -49,7 +49,7 @@ test: setup .venv/.ready-test
 
 test-long: setup .venv/.ready-test
 	@.ci/system browser
-	$(BIN)/python -m pytest -n 2 --dist worksteal --timeout 3600
+	$(BIN)/python -m pytest -n 2 --dist worksteal --timeout 3600 --hypothesis-profile long
 
 lint: setup .venv/.ready-test
 	$(BIN)/ruff check .
