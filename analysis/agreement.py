@@ -21,7 +21,7 @@ class IntraclassCorrelation:
     Returns a row per type in pingouin's naming (`type`: ICC(1,1), ICC(A,1), ICC(C,1), ICC(1,k), ICC(A,k), ICC(C,k)):
     `icc, ci_low, ci_high` (95%), `F, df1, df2, p, n_targets, n_raters`. ICC(A,1) and ICC(A,k) are absolute agreement
     of one and of all raters. Raters with a missing cell are left out (`dropped`). Agrees with R `psych::ICC`. Raises
-    `Undefined` where all ratings are equal.
+    `Undefined` where all ratings or all targets' means are equal. Limits are NaN where raters agree without residual.
     """
 
     value: str
@@ -33,6 +33,8 @@ class IntraclassCorrelation:
         wide, dropped = complete_table(frame, self.value, self.target, self.rater)
         if np.ptp(wide.to_numpy()) == 0:
             raise Undefined(f"{self.value} by {self.target}: all ratings are equal, so agreement has no value")
+        if np.ptp(wide.to_numpy().sum(axis=0)) == 0:
+            raise Undefined(f"{self.value}: every {self.target} has the same mean, so the ICC has no value")
         plain = pd.DataFrame(wide.to_numpy()).rename_axis("rater").reset_index()
         long = plain.melt("rater", var_name="target", value_name="value")
         found = unrounded_icc(long)
@@ -49,7 +51,8 @@ def unrounded_icc(long: pd.DataFrame) -> pd.DataFrame:
     before = pingouin.options["round.column.CI95"]
     pingouin.options["round.column.CI95"] = None
     try:
-        with warnings.catch_warnings():
+        # where raters differ by constants alone the residual is 0, and limits that divide by it are NaN
+        with warnings.catch_warnings(), np.errstate(divide="ignore", invalid="ignore"):
             # pingouin 0.7.0 uses inplace arguments that pandas 3.1 announces to remove
             warnings.filterwarnings("ignore", message="The inplace keyword", category=Pandas4Warning)
             found = pingouin.intraclass_corr(long, targets="target", raters="rater", ratings="value")

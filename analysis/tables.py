@@ -1,5 +1,6 @@
 """Tables for the page: every cell as it will be read."""
 
+import math
 from collections.abc import Hashable, Iterable, Mapping, Sequence
 from dataclasses import dataclass
 
@@ -185,7 +186,9 @@ def table_of_raters(raters: pd.DataFrame) -> Table | None:
 
 
 def with_interval(entry: Mapping[Hashable, float], name: str) -> str:
-    """.290 [.019, .761]"""
+    """.290 [.019, .761]; without the bracket where there is no interval."""
+    if math.isnan(entry[f"{name}_low"]):
+        return f"{no_zero(entry[name], 3)} (no interval)"
     value, low, high = (no_zero(entry[key], 3) for key in (name, f"{name}_low", f"{name}_high"))
     return f"{value} [{low}, {high}]"
 

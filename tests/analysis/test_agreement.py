@@ -75,6 +75,22 @@ def test_sentences() -> None:
         KrippendorffAlpha("value", "what", "who")(alone)
 
 
+def ratings_by(people: list[list[int]]) -> pd.DataFrame:
+    cells = [(who, picture, given) for who, row in enumerate(people) for picture, given in enumerate(row)]
+    return pd.DataFrame(cells, columns=["rater", "target", "value"])
+
+
+def test_agreement_without_residual_is_one_and_has_no_interval() -> None:
+    found = IntraclassCorrelation("value", "target", "rater")(ratings_by([[1, 2, 3], [2, 3, 4]])).set_index("type")
+    assert found.loc["ICC(C,1)", "icc"] == pytest.approx(1)
+    assert np.isnan(found.loc["ICC(C,1)", "ci_low"])
+
+
+def test_pictures_of_one_mean_have_no_icc() -> None:
+    with pytest.raises(Undefined, match="every target has the same mean"):
+        IntraclassCorrelation("value", "target", "rater")(ratings_by([[1, 2, 3], [3, 2, 1], [2, 2, 2]]))
+
+
 def test_the_bootstrap_is_seeded() -> None:
     """Same seed, same interval."""
     random = np.random.default_rng(3)
