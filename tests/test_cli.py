@@ -8,8 +8,10 @@ import sys
 import tempfile
 from pathlib import Path
 
+import numpy as np
 import pytest
 import trimesh
+from PIL import Image
 
 FACTOR = '[[factor]]\nname = "backlight"\npath = "material.backlight"\nlevels = [1.2, 0.8]\n'
 QUESTION = '[[question]]\nname = "translucent"\ntext = "The object looks translucent."\n'
@@ -111,15 +113,19 @@ def test_serving_what_was_never_built(study: Path) -> None:
     expect_sentence(fakesss("serve", study), "manifest.json", "fakesss build")
 
 
-def test_render_reports_as_json(tmp_path: Path) -> None:
-    mesh = tmp_path / "cone.glb"
+@pytest.mark.parametrize("kind", ["obj", "ply", "stl", "glb"])
+@pytest.mark.parametrize("size", ["512x512", "317x211"])
+def test_a_users_mesh_is_drawn_without_a_pixel_that_is_not_finite(tmp_path: Path, kind: str, size: str) -> None:
+    mesh = tmp_path / f"cone.{kind}"
     trimesh.creation.cone(radius=1, height=2).export(mesh)
-    for size, width, height in (("512x512", 512, 512), ("317x211", 317, 211)):
-        result = fakesss("render", mesh, "-o", tmp_path / "cone.png", "--size", size, "--json")
-        assert result.returncode == 0, result.stderr
-        document = json.loads(result.stdout)
-        assert (document["width"], document["height"], document["non_finite"]) == (width, height, 0)
-        assert {"image", "gl_renderer", "passes", "warnings", "scene_sha256"} <= document.keys()
+    result = fakesss("render", mesh, "-o", tmp_path / "cone.png", "--size", size, "--json")
+    assert result.returncode == 0, result.stderr
+    document = json.loads(result.stdout)
+    assert f"{document['width']}x{document['height']}" == size
+    assert document["non_finite"] == 0
+    assert {"image", "gl_renderer", "passes", "warnings", "scene_sha256"} <= document.keys()
+    covered = np.ptp(np.asarray(Image.open(tmp_path / "cone.png")), axis=(0, 1))
+    assert (covered > 20).all()  # something is in the picture
 
 
 def test_set_overrides_one_field_and_refuses_an_unknown_one(tmp_path: Path) -> None:
