@@ -10,6 +10,7 @@ from importlib.metadata import version
 from pathlib import Path
 from typing import Any
 
+from fakesss.gpu import MEND, shared
 from fakesss.problem import BadInput
 
 BROWSERS = ("chromium", "chromium-browser", "google-chrome", "google-chrome-stable")
@@ -30,7 +31,7 @@ def look() -> list[Finding]:
     """Every finding, in the order a study needs them."""
     return [
         finding("Python", python, "everything", "install Python 3.11 or newer"),
-        finding("OpenGL", opengl, "building pictures", "apt-get install libegl1 libgl1 libegl-mesa0 libgl1-mesa-dri"),
+        finding("OpenGL", opengl, "building pictures", MEND),
         finding("Embree", embree, "ambient occlusion", "pip install embreex"),
         finding("database", database, "the survey", "use a Python built with SQLite 3.35 or newer"),
         finding("cache folder", cache_folder, "keeping baked occlusion", "set FAKESSS_CACHE to a writable folder"),
@@ -68,9 +69,10 @@ def python() -> str:
 
 def opengl() -> str:
     """Renderer and version of the context that pictures are drawn with."""
-    from fakesss.gpu import shared
-
-    return f"{shared().version}, {shared().renderer}"
+    try:
+        return f"{shared().version}, {shared().renderer}"
+    except BadInput as error:
+        raise BadInput(str(error).removesuffix(f"; {MEND}").removeprefix("OpenGL: ")) from None
 
 
 def embree() -> str:
