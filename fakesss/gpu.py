@@ -23,7 +23,7 @@ from fakesss.shader_source import Programs
 from fakesss.texture_pool import TexturePool
 
 REQUIRED = 330
-MEND = "install it with `apt-get install libegl1 libgl1 libegl-mesa0 libgl1-mesa-dri` (Debian, Ubuntu) or the card's own driver"
+MEND = "run `apt-get install libegl1 libgl1 libegl-mesa0 libgl1-mesa-dri` (Debian, Ubuntu) or install the card's driver"
 EXPLICIT_NAMES = {"libgl": "libGL.so.1", "libegl": "libEGL.so.1"}
 UPLOADS_KEPT = 16  # buffers: a few meshes, so that a sweep uploads nothing twice
 
