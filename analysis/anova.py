@@ -117,16 +117,20 @@ def sphericity(wide: pd.DataFrame, f: float, df1: int, df2: int) -> dict[str, fl
 
 
 def effect_sizes(effect: float, subject: float, error: float, df1: int, df2: int) -> dict[str, float]:
-    """Partial and generalized eta squared (Olejnik & Algina 2003) with their intervals."""
+    """Partial and generalized eta squared (Olejnik & Algina 2003) with their intervals.
+
+    The interval of partial eta squared is exact. A limit of it names the effect's sum of squares relative to the error;
+    put in the place of the observed one, with error and subjects as observed, that gives the limit of generalized eta
+    squared. The map rises from 0, so both intervals exclude 0 exactly when the uncorrected F test does.
+    """
     partial = effect / (effect + error)
-    generalized = effect / (effect + subject + error)
     partial_low, partial_high = eta_squared_interval(partial, df1, df2, EFFECT_LEVEL)
-    low, high = eta_squared_interval(generalized, df1, df2, EFFECT_LEVEL)
+    low, high = (error * limit / (1 - limit) for limit in (partial_low, partial_high))
     return {
         "partial_eta_squared": partial,
         "partial_ci_low": partial_low,
         "partial_ci_high": partial_high,
-        "generalized_eta_squared": generalized,
-        "ci_low": low,
-        "ci_high": high,
+        "generalized_eta_squared": effect / (effect + subject + error),
+        "ci_low": low / (low + subject + error),
+        "ci_high": high / (high + subject + error),
     }

@@ -11,7 +11,7 @@ from hypothesis import HealthCheck, assume, given, settings
 from hypothesis import strategies as st
 
 from analysis import OneWayAnova, RepeatedMeasuresAnova
-from analysis.anova import sphericity
+from analysis.anova import effect_sizes, sphericity
 from analysis.undefined import Undefined
 
 DATA = Path(__file__).parents[1] / "data" / "statistics"

@@ -84,7 +84,7 @@ def test_the_page_says_it_in_words(thesis_report: Path) -> None:
         "Falls with backlight: 5.11 at 0.8, 4.45 at 1.2 and 4.05 at 1.6.",
         "HSD[.05] = 0.82; HSD[.01] = 1",
         "44 participants showed a significant effect of thickness exponent on ratings of “translucent”, "
-        "F(1.67, 71.94) = 22.43, p < .001, η²G = .232, 90% CI [.106, .348]",
+        "F(1.67, 71.94) = 22.43, p < .001, η²G = .232, 90% CI [.132, .326]",
         "95% within-subject (Cousineau–Morey) confidence interval",
         "img01, img04, img07",
         'The "best" own picture was picked by the same ratings',
