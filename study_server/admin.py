@@ -12,7 +12,7 @@ from study_server import counts
 from study_server.admin_door import COOKIE, COOKIE_S, cookie_value, is_admin, is_secret
 from study_server.export import ROWS, Source, table_text
 from study_server.sessions import release_s
-from study_server.site import AtSite, Fields, Site, answer, site_of, sorry
+from study_server.site import AtSite, Fields, Mode, Site, answer, site_of, sorry
 
 router = APIRouter(prefix="/admin")
 
@@ -77,16 +77,18 @@ def progress(request: Request, site: Unlocked) -> Response:
 
 
 @router.get("/export/{table}.csv")
-def download(request: Request, site: Unlocked, table: str) -> Response:
-    """One table of the export, sent as it is read."""
+def download(request: Request, site: Unlocked, table: str, mode: Mode | None = None) -> Response:
+    """One table of the export, sent as it is read: of `mode`, or else of the mode that is served."""
     if table not in ROWS:
         return sorry(request, 404, "There is no such table.")
 
+    chosen = mode or site.mode
+
     def pieces() -> Iterator[str]:
         with site.database.reading() as connection:
-            yield from table_text(table, Source(connection, site.study, site.mode, site.salt))
+            yield from table_text(table, Source(connection, site.study, chosen, site.salt))
 
-    disposition = f'attachment; filename="{table}{"" if site.mode == "live" else f"-{site.mode}"}.csv"'
+    disposition = f'attachment; filename="{table}{"" if chosen == "live" else f"-{chosen}"}.csv"'
     return StreamingResponse(pieces(), media_type="text/csv", headers={"Content-Disposition": disposition})
 
 

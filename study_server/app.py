@@ -76,7 +76,8 @@ def admin_secret(study_folder: Path, database_url: str | None = None) -> str:
 def health(site: AtSite) -> Response:
     """200 if a rating could be brought to disk now, else 503."""
     if is_writable(site.database):
-        return JSONResponse({"status": "ok", "study": site.study.title, "mode": site.mode})
+        facts = {"status": "ok", "study": site.study.title, "identity": site.study.identity, "mode": site.mode}
+        return JSONResponse(facts)
     return JSONResponse({"status": "the database cannot be written"}, 503)
 
 

@@ -47,12 +47,13 @@ def here(request: Request, site: AtSite, token: str) -> Response:
 
 @router.post("/s/{token}/consent")
 def consent(request: Request, site: AtSite, token: str, fields: Fields) -> Response:
-    """Starts the session, once, however often it is sent."""
+    """Starts the session, once, however often it is sent. A program says `simulated=yes` and is kept apart."""
     external = External.from_query(fields)
     if not is_valid(site.signing_key, token) or (external and not belongs_to(site.signing_key, token, external)):
         return sorry(request, 404, STRANGER)
     with site.database.writing() as connection:
-        sessions.start(connection, site.study, site.mode, token, external, time.time())
+        mode = "simulated" if fields.get("simulated") == "yes" else site.mode
+        sessions.start(connection, site.study, mode, token, external, time.time())
     return RedirectResponse(f"/s/{token}", 303)
 
 
@@ -80,7 +81,7 @@ def ask_withdraw(request: Request, site: AtSite, token: str) -> Response:
         session = sessions.find(connection, token)
     if session is None:
         return sorry(request, 404, STRANGER)
-    return answer(request, "withdraw.html", pages.frame(site.study, site.mode, token, "withdraw"))
+    return answer(request, "withdraw.html", pages.frame(site.study, session["mode"], token, "withdraw"))
 
 
 @router.post("/s/{token}/withdraw")

@@ -35,16 +35,20 @@ def simulate(
 ) -> dict[str, Any]:
     """`started` raters take part at `url`, `completed` of them to the end; outlives restarts of the server.
 
+    They are of mode simulated whatever mode the server serves. Simulated raters of earlier runs are counted first and
+    the new ones numbered after them, so that the same seed brings new people rather than the same ones again.
     Returns the shape of `fakesss simulate --json`: raters started and completed; ratings acknowledged by the server;
     of these, stored (found in the export that the server sends), lost (not found with that value) and duplicated
     (further rows with the same session, trial and question); median and 99th percentile of a save in ms.
-    Raises `BadInput` for counts that make no sense, effects that are not of the study, or a server out of reach.
+    Raises `BadInput` for counts that make no sense, effects that are not of the study, an address that is none, a
+    server out of reach, or one that serves another study.
     """
     if not 0 <= completed <= started:
         raise BadInput(f"--completed {completed}: must be between 0 and --started {started}")
     if isinstance(effects, Path):
         effects = load_effects(effects, study)
-    raters = [Rater(study, effects or default_effects(study), seed, number) for number in range(started)]
+    first = raters_before(url, study, admin_secret)
+    raters = [Rater(study, effects or default_effects(study), seed, first + number) for number in range(started)]
     quits = quitting(started, completed, len(study.stimuli), seed)
     with tqdm(total=pictures(study, quits), unit="picture", disable=None if progress else True) as bar:
         walks = all_walks(url, raters, quits, bar)
@@ -91,12 +95,41 @@ def all_walks(url: str, raters: list[Rater], quits: list[int | None], bar: "tqdm
             raise
 
 
-def exported_ratings(url: str, admin_secret: str, sessions: set[str]) -> dict[Key, list[int]]:
-    """The ratings of these sessions in the export, as a reader of the CSV finds them."""
+def raters_before(url: str, study: BuiltStudy, admin_secret: str) -> int:
+    """How many simulated raters the server at `url` knows already; `BadInput` unless it serves this very study."""
+    check_address(url)
+    with httpx.Client(base_url=url, follow_redirects=True, timeout=30.0) as client:
+        health = patiently(client, "GET", "/health")
+    try:
+        identity = health.json()["identity"]
+    except (ValueError, KeyError, TypeError):  # some other program answers there
+        identity = ""
+    if identity != study.identity:
+        raise BadInput(f"{url}: serves another study than {study.folder}, or another version of it; give its address")
+    return len(exported_rows(url, admin_secret, "participants"))
+
+
+def check_address(url: str) -> None:
+    """`BadInput` unless `url` can be an address at all: asking again and again would not mend it."""
+    try:
+        address = httpx.URL(url)
+    except httpx.InvalidURL as error:
+        raise BadInput(f"{url!r}: is no address ({error}); write http://HOST:PORT") from None
+    if address.scheme not in ("http", "https") or not address.host:
+        raise BadInput(f"{url!r}: is no address of a survey; write http://HOST:PORT")
+
+
+def exported_rows(url: str, admin_secret: str, table: str) -> list[dict[str, str]]:
+    """A table of the export of all simulated raters, as a reader of the CSV finds it."""
     with httpx.Client(base_url=url, headers={"Authorization": f"Bearer {admin_secret}"}, timeout=120.0) as client:
-        text = patiently(client, "GET", "/admin/export/ratings.csv").text
+        text = patiently(client, "GET", f"/admin/export/{table}.csv", params={"mode": "simulated"}).text
+    return list(csv.DictReader(io.StringIO(text)))
+
+
+def exported_ratings(url: str, admin_secret: str, sessions: set[str]) -> dict[Key, list[int]]:
+    """The ratings of these sessions in the export."""
     found: dict[Key, list[int]] = {}
-    for row in csv.DictReader(io.StringIO(text)):
+    for row in exported_rows(url, admin_secret, "ratings"):
         if row["session"] in sessions and row["rating"]:
             found.setdefault((row["session"], row["trial"], row["question"]), []).append(int(row["rating"]))
     return found

@@ -80,7 +80,9 @@ def walk(url: str, rater: Rater, quits_after: int | None, saved: Callable[[], ob
 
 
 def fill_in(rater: Rater, state: dict[str, Any]) -> dict[str, str]:
-    """A form's answers: some choice for each question about the person, a comment from every fifth."""
+    """A form's answers: a program's consent, some choice for each question about the person, comments from a fifth."""
+    if state["step"] == "consent":
+        return {"simulated": "yes"}  # else these answers could not be told from people's
     if state["step"] == "about":
         random = rater.random(3)
         return {field["name"]: str(random.choice(field["choices"] or ["-"])) for field in state["fields"]}

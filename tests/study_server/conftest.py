@@ -28,10 +28,11 @@ def url(study: Path) -> Iterator[str]:
         yield address
 
 
-def downloaded(study: Path, url: str, table: str) -> list[dict[str, str]]:
-    """The rows of an exported table, downloaded from the server at `url`."""
+def downloaded(study: Path, url: str, table: str, mode: str = "") -> list[dict[str, str]]:
+    """The rows of an exported table, downloaded from the server at `url`: of its own mode, or of `mode`."""
     headers = {"Authorization": f"Bearer {admin_secret(study)}"}
-    response = httpx.get(f"{url}/admin/export/{table}.csv", headers=headers)
+    chosen = {"mode": mode} if mode else {}
+    response = httpx.get(f"{url}/admin/export/{table}.csv", headers=headers, params=chosen)
     assert response.status_code == 200
     return list(csv.DictReader(io.StringIO(response.text)))
 
@@ -45,4 +46,4 @@ def csv_rows() -> Callable[..., list[dict[str, str]]]:
 @pytest.fixture
 def exported(study: Path, url: str) -> Callable[..., list[dict[str, str]]]:
     """The rows of an exported table of the study at `url`."""
-    return lambda table="ratings": downloaded(study, url, table)
+    return lambda table="ratings", mode="": downloaded(study, url, table, mode)

@@ -3,6 +3,7 @@
 from collections.abc import Callable
 from pathlib import Path
 
+import httpx
 import numpy as np
 import pytest
 from study_fixture import write_study
@@ -16,6 +17,7 @@ from study_server.manifest import BuiltStudy, load_study
 from study_server.raters import Effects, QuestionEffects, Rater, default_effects, load_effects, shift
 from study_server.serve import served
 from study_server.simulate import quitting, simulate
+from study_server.site import Mode
 
 Exported = Callable[..., list[dict[str, str]]]
 
@@ -31,9 +33,49 @@ def test_a_simulation_loses_and_doubles_nothing(url: str, study: Path, exported:
         "started", "completed", "acknowledged", "stored", "lost", "duplicated", "p50_ms", "p99_ms", "base_url"
     ]  # fmt: skip
     assert (result["started"], result["completed"], result["lost"], result["duplicated"]) == (7, 5, 0, 0)
-    assert result["acknowledged"] == result["stored"] == sum(row["rating"] != "" for row in exported())
-    assert sum(person["status"] == "finished" for person in exported("participants")) == 5
+    assert result["acknowledged"] == result["stored"] == sum(row["rating"] != "" for row in exported(mode="simulated"))
+    assert sum(person["status"] == "finished" for person in exported("participants", "simulated")) == 5
     assert 0 < result["p50_ms"] <= result["p99_ms"]
+
+
+@pytest.mark.parametrize("mode", ["live", "pilot"])
+def test_programs_are_never_taken_for_people(study: Path, csv_rows: Exported, mode: Mode) -> None:
+    with served(study, mode=mode) as url:
+        Participant(url).to_trials().rate()
+        simulate(url, load_study(study), admin_secret(study), started=3, completed=2, progress=False)
+        headers = {"Accept": "application/json", "Authorization": f"Bearer {admin_secret(study)}"}
+        page = httpx.get(f"{url}/admin", headers=headers).json()
+        people = csv_rows(study, url, "participants")
+        programs = csv_rows(study, url, "ratings", "simulated")
+    assert (page["mode"], page["started"], page["ratings"], len(people)) == (mode, 1, 2, 1)
+    assert {row["mode"] for row in programs} == {"simulated"}
+    assert len({row["session"] for row in programs} - {people[0]["session"]}) == 3
+
+
+def test_a_second_run_of_the_same_seed_brings_new_people(study: Path, csv_rows: Exported) -> None:
+    with served(study, mode="simulated") as url:
+        for _ in range(2):
+            simulate(url, load_study(study), admin_secret(study), started=3, completed=3, progress=False)
+        rows = csv_rows(study, url, "ratings")
+    told: dict[str, list[tuple[str, str]]] = {}
+    for row in rows:
+        told.setdefault(row["session"], []).append((row["question"], row["rt_ms"]))
+    assert len({tuple(sorted(answers)) for answers in told.values()}) == 6
+
+
+def test_a_server_of_another_study_is_left_alone(study: Path, url: str, tmp_path: Path, exported: Exported) -> None:
+    other = load_study(write_study(tmp_path / "other", 9))
+    with pytest.raises(BadInput, match=f"^{url}: serves another study than .*other"):
+        simulate(url, other, admin_secret(study), started=1, completed=1, progress=False)
+    assert exported("participants", "simulated") == []
+
+
+@pytest.mark.parametrize(
+    "address", ["127.0.0.1:8000", "localhost:8000", "nothing", "", "ftp://x", "http://", "http://x:y"]
+)
+def test_an_address_that_is_none_is_said_at_once(study: Path, address: str) -> None:
+    with pytest.raises(BadInput, match=r"is no address.*write http://HOST:PORT"):
+        simulate(address, load_study(study), "", started=1, completed=1, progress=False)
 
 
 def test_exactly_as_many_stay_as_asked() -> None:
