@@ -100,6 +100,41 @@ def test_repeated_measures_is_exact_on_likert_data(table: list[list[int]]) -> No
 
 
 @quick
+@given(likert_tables)
+def test_effect_intervals_agree_with_p(table: list[list[int]]) -> None:
+    """No 90% interval starts above its estimate; both exclude 0 exactly when the F test is significant at .05."""
+    try:
+        row = REPEATED(long(table)).iloc[0]
+    except Undefined:
+        assume(False)
+    assume(abs(row["p"] - 0.05) > 1e-9)
+    assert (row["ci_low"] > 0) == (row["partial_ci_low"] > 0) == (row["p"] < 0.05)
+    for name, estimate in (("", "generalized_eta_squared"), ("partial_", "partial_eta_squared")):
+        assert row[f"{name}ci_low"] - 1e-9 <= row[estimate] <= 1 and row[f"{name}ci_low"] <= row[f"{name}ci_high"] <= 1
+
+
+def test_people_who_differ_much_leave_a_sure_effect_sure() -> None:
+    """F(2, 78) = 31.9, p < .0001 with subjects of 40 times the error: a small generalized effect, surely not none."""
+    found = effect_sizes(31.9 * 2 / 78, 40.0, 1.0, 2, 78)
+    assert 0.01 < found["ci_low"] < found["generalized_eta_squared"] < found["ci_high"] < 0.04
+
+
+def test_coverage_of_the_generalized_interval() -> None:
+    """Sums of squares drawn from their distributions: the 90% interval holds the population's value about as often."""
+    random = np.random.default_rng(4)
+    n, k, noncentrality, subject_variance, draws = 30, 3, 15.0, 3.0, 400
+    df1, df2 = k - 1, (k - 1) * (n - 1)
+    truth = noncentrality / (noncentrality + (n - 1) * k * (1 + subject_variance))
+    hits = 0
+    for _ in range(draws):
+        effect, error = random.noncentral_chisquare(df1, noncentrality), random.chisquare(df2)
+        subject = (1 + k * subject_variance) * random.chisquare(n - 1)
+        found = effect_sizes(effect, subject, error, df1, df2)
+        hits += found["ci_low"] <= truth <= found["ci_high"]
+    assert 0.86 <= hits / draws <= 0.94
+
+
+@quick
 @given(likert_tables, st.randoms(use_true_random=False))
 def test_order_names_and_shift_do_not_matter(table: list[list[int]], random: object) -> None:
     """Rows shuffled, people renamed, ratings shifted by 1e6: the same numbers."""
