@@ -49,7 +49,7 @@ def build_study(study: Path, jobs: int = 1, force: bool = False) -> dict[str, An
     """All of study.toml checked, each table by its owner, before the first picture is drawn."""
     from analysis.plan import check_analysis
     from fakesss.scene import read_toml
-    from stimuli.build import build
+    from stimuli.build import build, levels_without_effect
     from stimuli.study import study_file
     from study_server.settings import check_survey
 
@@ -58,7 +58,8 @@ def build_study(study: Path, jobs: int = 1, force: bool = False) -> dict[str, An
     check_survey(table, path.name)
     check_analysis(table, path.name)
     manifest = build(study, jobs=jobs, force=force)
-    for warning in dict.fromkeys(f"{e['id']}: {text}" for e in manifest["stimuli"] for text in e["warnings"]):
+    told = [f"{e['id']}: {text}" for e in manifest["stimuli"] for text in e["warnings"]]
+    for warning in [*dict.fromkeys(told), *levels_without_effect(manifest)]:
         say(warning)
     return manifest
 

@@ -1,4 +1,4 @@
-"""Everything a picture depends on. TOML <-> `Scene`; every field has a unit, a range and a default.
+"""Everything a picture depends on, read from TOML; every field has a unit, a range and a default.
 
 World frame: right-handed, y up, the object scaled so that its bounding sphere has radius 1 and is centred at the
 origin, its front towards +z. Colours are linear-light RGB with sRGB primaries.
@@ -132,9 +132,10 @@ class Scene(Strict):
         return validated(cls, data, source)
 
     def relative_to(self, folder: Path) -> Self:
-        """The same scene with a mesh file's path taken from `folder` (built-in names stay)."""
-        beside = folder / self.object
-        return self.model_copy(update={"object": str(beside)}) if beside.is_file() else self
+        """The same scene with a mesh file's path taken from `folder`, and from nowhere else; built-in names stay."""
+        from fakesss.shapes import is_mesh_file  # slow to import, and not needed to read a scene
+
+        return self.model_copy(update={"object": str(folder / self.object)}) if is_mesh_file(self.object) else self
 
     def replace(self, changes: Mapping[str, Any], source: str = "scene") -> Self:
         """A copy with `{"material.backlight": 0.8}` applied and checked again."""
@@ -146,6 +147,13 @@ class Scene(Strict):
                 place = place[parent]
             place[leaf] = value
         return self.from_dict(data, source)
+
+    def at(self, path: str) -> Any:
+        """The value of the field at `path`, for example `material.backlight`."""
+        value: Any = self
+        for part in path.split("."):
+            value = getattr(value, part)
+        return value
 
     def sha256(self) -> str:
         """Hash of every field, for naming and for telling stale pictures."""

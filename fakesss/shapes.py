@@ -9,7 +9,7 @@ from pathlib import Path
 
 from fakesss import cache, shape_figure, shape_hand, shape_head, shape_relief, shape_shell, solids
 from fakesss.distance import Distance
-from fakesss.mesh import EXTENSIONS, Mesh, load_mesh, mesh_from_surface
+from fakesss.mesh import Mesh, load_mesh, mesh_from_surface
 from fakesss.problem import BadInput, nearest
 
 DEFAULT_FACES = 60_000
@@ -44,13 +44,20 @@ def load_object(name: str, folder: Path = Path()) -> Mesh:
     Raises `BadInput` for a name that is neither a built-in object nor a file, a face count outside `FACES`, and
     whatever `load_mesh` cannot read.
     """
+    return load_mesh(folder / name) if is_mesh_file(name) else built_in(*shape_and_faces(name))
+
+
+def is_mesh_file(name: str) -> bool:
+    """Whether a scene's `object` means a file: it is no built-in name and has a suffix or a folder in it."""
+    return name.partition(":")[0] not in names() and (Path(name).suffix != "" or len(Path(name).parts) > 1)
+
+
+def shape_and_faces(name: str) -> tuple[str, int]:
+    """The shape and the number of faces that "figure" or "knot:60000" asks for; `BadInput` for anything else."""
     shape, _, count = name.partition(":")
-    if shape in names():
-        return built_in(shape, face_count(name, count))
-    path = folder / name
-    if path.is_file() or Path(name).suffix.lower().removeprefix(".") in EXTENSIONS or len(Path(name).parts) > 1:
-        return load_mesh(path)
-    raise BadInput(f'object "{name}": is neither a built-in object nor a file; {nearest(shape, names())}')
+    if shape not in names():
+        raise BadInput(f'object "{name}": is neither a built-in object nor a file; {nearest(shape, names())}')
+    return shape, face_count(name, count)
 
 
 def face_count(name: str, count: str) -> int:

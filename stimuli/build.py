@@ -5,17 +5,19 @@ renderer). Drawn pictures wait in `stimuli/.build/<key>.png` until all are there
 manifest is written last.
 """
 
+import contextlib
 import functools
 import json
-import shutil
 from collections.abc import Callable, Iterable, Iterator
 from concurrent.futures import ProcessPoolExecutor
 from multiprocessing import get_context
 from pathlib import Path
 from typing import Any
 
+import portalocker
 from tqdm import tqdm
 
+from fakesss.problem import BadInput
 from stimuli.design import Stimulus, stimuli_of
 from stimuli.manifest import (
     FORMAT,
@@ -30,6 +32,8 @@ from stimuli.manifest import (
 from stimuli.picture import Drawn, build_key, draw, software
 from stimuli.study import Study
 
+LOCK = "lock"
+
 
 def build(folder: Path, *, jobs: int = 1, force: bool = False, quiet: bool | None = None) -> dict[str, Any]:
     """Every picture of the study in `folder` on disk, and its manifest, which is also returned.
@@ -42,19 +46,40 @@ def build(folder: Path, *, jobs: int = 1, force: bool = False, quiet: bool | Non
     made_by = software()
     keys = {stimulus.id: build_key(stimulus, study.scene.size, folder, made_by) for stimulus in stimuli}
     store = Store(folder)
-    if not force:
-        store.take_over(up_to_date(folder), set(keys.values()))
-    tasks = {keys[s.id]: s for s in reversed(stimuli) if force or not store.has(keys[s.id])}
-    with tqdm(total=len(tasks), desc="pictures", unit="picture", disable=quiet) as bar:
-        for key, drawn in draw_all(tasks, study, folder, jobs):
-            store.put(key, drawn)
-            bar.update()
-    entries = [stimulus_entry(s, store.publish(keys[s.id], f"{s.id}.png")) for s in stimuli]
-    manifest = {"format": FORMAT, "study": study_entry(study, folder), "software": made_by, "stimuli": entries}
-    store.remove_strays({entry["file"] for entry in entries})
-    write_manifest(folder, manifest)
-    store.close()
-    return manifest
+    with one_build_at_a_time(store.waiting):
+        if not force:
+            store.take_over(up_to_date(folder), set(keys.values()))
+        tasks = {keys[s.id]: s for s in reversed(stimuli) if force or not store.has(keys[s.id])}
+        with tqdm(total=len(tasks), desc="pictures", unit="picture", disable=quiet) as bar:
+            for key, drawn in draw_all(tasks, study, folder, jobs):
+                store.put(key, drawn)
+                bar.update()
+        entries = identified([stimulus_entry(s, store.publish(keys[s.id], f"{s.id}.png")) for s in stimuli])
+        manifest = {"format": FORMAT, "study": study_entry(study, folder), "software": made_by, "stimuli": entries}
+        store.remove_strays({entry["file"] for entry in entries})
+        write_manifest(folder, manifest)
+        store.clear()
+        return manifest
+
+
+def identified(entries: list[dict[str, Any]]) -> list[dict[str, Any]]:
+    """The entries with `same_picture_as` set for every picture whose bytes came before."""
+    first: dict[str, str] = {}
+    for entry in entries:
+        earlier = first.setdefault(entry["sha256"], entry["id"])
+        if earlier != entry["id"] and entry["same_picture_as"] is None:
+            entry["same_picture_as"] = earlier
+    return entries
+
+
+def levels_without_effect(manifest: dict[str, Any]) -> list[str]:
+    """A sentence for each picture that equals an earlier one although its scene differs: nobody can tell them apart."""
+    scenes = {entry["id"]: entry["scene"] for entry in manifest["stimuli"]}
+    return [
+        f"{entry['id']}: is the same picture as {entry['same_picture_as']}, though made differently"
+        for entry in manifest["stimuli"]
+        if entry["same_picture_as"] and entry["scene"] != scenes[entry["same_picture_as"]]
+    ]
 
 
 def draw_all(tasks: dict[str, Stimulus], study: Study, folder: Path, jobs: int) -> Iterator[tuple[str, Drawn]]:
@@ -87,14 +112,42 @@ def verify(folder: Path, *, quiet: bool | None = None) -> list[str]:
     return problems
 
 
+def earlier_entries(folder: Path) -> list[dict[str, Any]]:
+    """The manifest entries of an earlier build; none where there is no manifest that can be read."""
+    try:
+        return list(read_manifest(folder)["stimuli"])
+    except BadInput:
+        return []
+
+
 def up_to_date(folder: Path) -> Iterator[tuple[str, Path, dict[str, Any]]]:
     """(build key, file, manifest entry) of pictures from an earlier build whose bytes are still the manifest's."""
-    if not manifest_path(folder).is_file():
-        return
-    for entry in read_manifest(folder)["stimuli"]:
+    for entry in earlier_entries(folder):
         path = manifest_path(folder).parent / entry["file"]
         if path.is_file() and sha256(path.read_bytes()) == entry["sha256"]:
             yield entry["build_key"], path, entry
+
+
+@contextlib.contextmanager
+def one_build_at_a_time(folder: Path) -> Iterator[None]:
+    """Holds `folder` for this process (two builds would take each other's pictures away); removes it when empty."""
+    try:
+        folder.mkdir(parents=True, exist_ok=True)
+        lock = (folder / LOCK).open("wb")
+    except OSError as error:
+        reason = error.strerror or error
+        raise BadInput(f"{folder}: cannot be written ({reason}); check the folder's permissions and space") from None
+    with lock:
+        try:
+            portalocker.lock(lock, portalocker.LockFlags.EXCLUSIVE | portalocker.LockFlags.NON_BLOCKING)
+        except portalocker.LockException:
+            raise BadInput(f"{folder.parent}: another build of this study is running; wait for it to end") from None
+        try:
+            yield
+        finally:
+            (folder / LOCK).unlink(missing_ok=True)
+            with contextlib.suppress(OSError):  # not empty: an interrupted build left pictures for the next one
+                folder.rmdir()
 
 
 class Store:
@@ -105,8 +158,12 @@ class Store:
         self.waiting = self.final / ".build"
 
     def has(self, key: str) -> bool:
-        """Whether the picture is there, whole: its description is written after it."""
-        return (self.waiting / f"{key}.json").is_file()
+        """Whether the picture is there and is the one its description tells of."""
+        try:
+            facts = json.loads((self.waiting / f"{key}.json").read_bytes())
+            return bool(sha256((self.waiting / f"{key}.png").read_bytes()) == facts["sha256"])
+        except (OSError, ValueError, KeyError, TypeError):
+            return False
 
     def put(self, key: str, drawn: Drawn) -> None:
         """Keep a picture."""
@@ -132,11 +189,11 @@ class Store:
 
     def remove_strays(self, names: set[str]) -> None:
         """Delete pictures that an earlier manifest listed and this build does not."""
-        if (self.final / "manifest.json").is_file():
-            for entry in read_manifest(self.final.parent)["stimuli"]:
-                if entry["file"] not in names:
-                    (self.final / Path(entry["file"]).name).unlink(missing_ok=True)
+        for entry in earlier_entries(self.final.parent):
+            if entry["file"] not in names:
+                (self.final / Path(entry["file"]).name).unlink(missing_ok=True)
 
-    def close(self) -> None:
-        """Drop the waiting room; called when the manifest stands."""
-        shutil.rmtree(self.waiting, ignore_errors=True)
+    def clear(self) -> None:
+        """Drop the waiting room's pictures; called when the manifest stands."""
+        for path in [*self.waiting.glob("*.png"), *self.waiting.glob("*.json")]:
+            path.unlink(missing_ok=True)

@@ -4,8 +4,9 @@ import itertools
 import random
 from collections.abc import Iterator
 from dataclasses import dataclass, replace
-from typing import Any, Literal
+from typing import Literal
 
+from fakesss.problem import BadInput
 from fakesss.scene import Scene
 from stimuli.study import Factor, Level, Study
 
@@ -93,8 +94,11 @@ def number(entries: list[Stimulus], width: int) -> list[Stimulus]:
 def repeats(entries: list[Stimulus], study: Study) -> list[Stimulus]:
     """`design.repeats` pictures drawn by lot (seeded), to be shown a second time for test-retest."""
     candidates = [entry for entry in entries if entry.same_picture_as is None]
-    wanted = min(study.design.repeats, len(candidates))
-    chosen = random.Random(study.seed).sample(candidates, wanted)
+    if study.design.repeats > len(candidates):
+        raise BadInput(
+            f"study.toml: design.repeats: {study.design.repeats}: must be <= {len(candidates)}, the different pictures"
+        )
+    chosen = random.Random(study.seed).sample(candidates, study.design.repeats)
     return [
         replace(
             entry, id=f"{entry.id}r", role="repeat", rows=(), same_picture_as=entry.id, label=f"{entry.label} (again)"
@@ -105,9 +109,7 @@ def repeats(entries: list[Stimulus], study: Study) -> list[Stimulus]:
 
 def base_level(factor: Factor, scene: Scene) -> Level:
     """The base scene's value of the factor's field, written as the study writes it (25, not 25.0)."""
-    value: Any = scene
-    for part in factor.path.split("."):
-        value = getattr(value, part)
+    value = scene.at(factor.path)
     return next((level for level in factor.levels if level == value), value)
 
 
@@ -117,4 +119,4 @@ def shown(level: Level) -> str:
         return str(level).lower()
     if isinstance(level, tuple):
         return "(" + ", ".join(shown(part) for part in level) + ")"
-    return f"{level:g}" if isinstance(level, float) else str(level)
+    return f"{level:.12g}" if isinstance(level, float) else str(level)

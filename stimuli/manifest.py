@@ -11,6 +11,7 @@ from stimuli.design import Stimulus
 from stimuli.study import Study, study_sha256
 
 FORMAT = 1
+ENTRY = {"id", "file", "sha256", "width", "height", "scene", "passes", "warnings", "build_key"}
 
 
 def manifest_path(folder: Path) -> Path:
@@ -59,7 +60,10 @@ def read_manifest(folder: Path) -> dict[str, Any]:
     except FileNotFoundError:
         raise BadInput(f"{path}: no such file; run `fakesss build {folder}` first") from None
     except (OSError, ValueError) as error:
-        raise BadInput(f"{path}: cannot be read ({error}); run `fakesss build {folder} --force`") from None
+        raise BadInput(f"{path}: cannot be read ({error}); run `fakesss build {folder}`") from None
+    entries = manifest.get("stimuli") if isinstance(manifest, dict) else None
+    if not isinstance(entries, list) or not all(isinstance(e, dict) and e.keys() >= ENTRY for e in entries):
+        raise BadInput(f"{path}: is no manifest; run `fakesss build {folder}`")
     if manifest.get("format") != FORMAT:
         raise BadInput(f"{path}: format {manifest.get('format')!r}, this version reads {FORMAT}; build the study again")
     return manifest
@@ -70,9 +74,15 @@ def write_atomically(path: Path, content: bytes) -> None:
     try:
         path.parent.mkdir(parents=True, exist_ok=True)
         with tempfile.NamedTemporaryFile(dir=path.parent, prefix=f".{path.name}.", delete=False) as file:
-            file.write(content)
-            Path(file.name).chmod(0o644)
-        Path(file.name).replace(path)
+            waiting = Path(file.name)
+            try:
+                file.write(content)
+                file.flush()
+                waiting.chmod(0o644)
+                waiting.replace(path)
+            except BaseException:
+                waiting.unlink(missing_ok=True)
+                raise
     except OSError as error:
         raise BadInput(
             f"{path}: cannot be written ({error.strerror or error}); check the folder's permissions and space"

@@ -15,6 +15,10 @@ from fakesss.problem import BadInput
 from stimuli.design import Stimulus
 from stimuli.manifest import sha256
 
+# What a picture's bytes come from besides our own source: shapes, repairs, occlusion, drawing, encoding.
+LIBRARIES = ("moderngl", "numpy", "scipy", "trimesh", "embreex", "scikit-image", "fast-simplification", "pillow")
+NOT_DRAWING = ("cli", "doctor", "inspect", "contact_sheet")
+
 
 @dataclass(frozen=True)
 class Drawn:
@@ -39,22 +43,24 @@ class Drawn:
 
 def software() -> dict[str, str]:
     """Who draws: the manifest's `software` table. Opens the OpenGL context."""
-    from fakesss.gpu import shared
+    from fakesss.gpu import renderer_facts
 
-    gpu = shared()
-    facts = {"fakesss": fakesss.__version__, "moderngl": version("moderngl")}
-    return {**facts, "gl_renderer": gpu.renderer, "gl_version": gpu.version}
+    return {"fakesss": fakesss.__version__, **{name: version(name) for name in LIBRARIES}, **renderer_facts()}
 
 
 def build_key(stimulus: Stimulus, size: tuple[int, int], folder: Path, made_by: dict[str, str]) -> str:
     """Hash of everything the picture's bytes depend on."""
+    from fakesss.shapes import is_mesh_file, shape_and_faces
+
     depends: dict[str, Any] = {"software": made_by, "source": source_sha256(), "size": size}
     if stimulus.scene is None:
         depends["image"] = file_sha256(folder / str(stimulus.image))
     else:
         depends["scene"] = stimulus.scene.model_dump(mode="json")
-        mesh = folder / stimulus.scene.object
-        depends["mesh"] = file_sha256(mesh) if mesh.is_file() else None
+        if is_mesh_file(stimulus.scene.object):
+            depends["mesh"] = file_sha256(folder / stimulus.scene.object)
+        else:
+            shape_and_faces(stimulus.scene.object)  # a misspelt name is said before anything is drawn
     return sha256(json.dumps(depends, sort_keys=True).encode())
 
 
@@ -99,10 +105,10 @@ def file_sha256(path: Path) -> str:
 
 @cache
 def source_sha256() -> str:
-    """Hash of the renderer's own source, so that a changed shader makes its pictures stale."""
+    """Hash of the source that draws, so that a changed shader makes its pictures stale."""
     root = Path(fakesss.__file__).parent
     digest = hashlib.sha256()
-    for path in sorted([*root.rglob("*.py"), *root.rglob("glsl/*")]):
-        if path.is_file() and path.name != "cli.py":
-            digest.update(path.relative_to(root).as_posix().encode() + b"\0" + path.read_bytes())
+    for path in sorted([*root.rglob("*.py"), *root.rglob("glsl/*"), Path(__file__)]):
+        if path.is_file() and not path.stem.startswith(NOT_DRAWING):
+            digest.update(path.name.encode() + b"\0" + path.read_bytes())
     return digest.hexdigest()

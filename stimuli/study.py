@@ -4,15 +4,17 @@ The tables that concern participants and statistics (`[[question]]`, `[survey]`,
 """
 
 import hashlib
+import math
 from pathlib import Path
 from typing import Annotated, Any, Literal, Self
 
-from pydantic import Field, model_validator
+from pydantic import Field, field_validator, model_validator
 
 from fakesss.problem import BadInput, Strict, nearest, validated
 from fakesss.scene import Scene, read_toml, scene_paths
 
 Level = str | bool | int | float | tuple[float | int, ...]
+PLAIN = (str, bool, int, float)
 
 
 class Factor(Strict):
@@ -20,7 +22,22 @@ class Factor(Strict):
 
     name: Annotated[str, Field(min_length=1)]
     path: Annotated[str, Field(description="a scene field, for example material.backlight")]
-    levels: Annotated[tuple[Level, ...], Field(min_length=1)]
+    levels: tuple[Level, ...]
+
+    @field_validator("levels", mode="before")
+    @classmethod
+    def _levels_are_values(cls, given: Any) -> Any:
+        """Said in our words: pydantic would name every branch of the union."""
+        if not isinstance(given, list | tuple) or not given:
+            raise ValueError("must be a list of at least one level, for example [0.8, 1.2]")
+        for level in given:
+            parts = level if isinstance(level, list | tuple) and level else [level]
+            numbers = [part for part in parts if isinstance(part, float)]
+            if not all(isinstance(part, PLAIN) for part in parts) or not all(map(math.isfinite, numbers)):
+                raise ValueError(
+                    f"level {level!r} must be a finite number, true or false, a word, or a list of numbers"
+                )
+        return given
 
 
 class Design(Strict):
@@ -73,6 +90,9 @@ class Study(Strict):
             twice = {name for name in names if names.count(name) > 1}
             if twice:
                 raise ValueError(f'{what} "{sorted(twice)[0]}" is used twice; give each factor its own')
+        spreadsheet = next((f.name for f in self.factor if f.name[0] in "=+-@\t\r"), None)
+        if spreadsheet is not None:
+            raise ValueError(f'factor name "{spreadsheet}" would be a formula in a spreadsheet; begin it with a letter')
         if not self.factor and not self.compare:
             raise ValueError("nothing to show: add a [[factor]] or a [[compare]] picture")
         return self
@@ -97,11 +117,29 @@ def check_factor(factor: Factor, base: Scene, source: str) -> None:
     paths = list(scene_paths())
     if factor.path not in paths:
         raise BadInput(f'{where}: path "{factor.path}" is no scene field; {nearest(factor.path, paths)}')
-    for index, level in enumerate(factor.levels):
-        if level in factor.levels[:index]:
-            raise BadInput(f"{where}: level {level!r} stands twice; remove one")
+    seen: list[Any] = []
+    for level in factor.levels:
         try:
-            base.replace({factor.path: level})
+            value = base.replace({factor.path: level}).at(factor.path)
         except BadInput as error:
             mend = str(error).rsplit(": ", 1)[-1]
             raise BadInput(f"{where}: level {level!r}: {mend}") from None
+        if not same_kind(level, value):
+            raise BadInput(f"{where}: level {level!r}: must be written as a {kind(value)}, like {value!r}")
+        if value in seen:
+            raise BadInput(f"{where}: level {level!r} stands twice; remove one")
+        seen.append(value)
+
+
+def same_kind(level: Level, value: Any) -> bool:
+    """Whether a level is written as what the field holds: no "1.5" or true for a number, no 1 for true."""
+    if isinstance(level, tuple):
+        return isinstance(value, tuple) and all(map(same_kind, level, value))
+    return kind(level) == kind(value)
+
+
+def kind(value: Any) -> str:
+    """true or false, word, number or list."""
+    if isinstance(value, bool):
+        return "true or false"
+    return "word" if isinstance(value, str) else "list" if isinstance(value, tuple) else "number"

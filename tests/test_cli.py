@@ -71,7 +71,15 @@ def test_a_level_out_of_range(study: Path) -> None:
 
 def test_a_missing_mesh(study: Path) -> None:
     (study / "study.toml").write_text(STUDY.replace("sphere:4000", "bunny.ply"), encoding="utf-8")
-    expect_sentence(fakesss("build", study), "bunny.ply")
+    expect_sentence(fakesss("build", study), "study.toml: bunny.ply: cannot be read (No such file", "check the file's")
+    assert not (study / "stimuli").exists()
+
+
+def test_a_misspelt_object_is_said_before_anything_is_drawn(study: Path) -> None:
+    factor = '[[factor]]\nname = "object"\npath = "object"\nlevels = ["sphere:4000", "shpere"]\n'
+    (study / "study.toml").write_text(STUDY.replace(FACTOR, factor), encoding="utf-8")
+    expect_sentence(fakesss("build", study), 'object "shpere": is neither', 'did you mean "sphere"?')
+    assert not (study / "stimuli").exists()
 
 
 def test_a_mesh_with_nan(tmp_path: Path) -> None:
@@ -89,6 +97,10 @@ def test_an_empty_mesh(tmp_path: Path) -> None:
 def test_an_unwritable_folder(tmp_path: Path) -> None:
     (tmp_path / "file").write_text("not a folder")
     expect_sentence(fakesss("new", tmp_path / "file" / "study"), "cannot be written")
+    (tmp_path / "study").mkdir()
+    (tmp_path / "study" / "study.toml").write_text(STUDY, encoding="utf-8")
+    (tmp_path / "study" / "stimuli").write_text("not a folder")
+    expect_sentence(fakesss("build", tmp_path / "study"), "stimuli", "cannot be written")
     expect_sentence(
         fakesss("render", "sphere:4000", "--size", "8x8", "-o", tmp_path / "file" / "x.png"), "does not exist; make it"
     )

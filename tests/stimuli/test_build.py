@@ -9,6 +9,7 @@ from typing import Any
 
 import numpy as np
 import pytest
+import trimesh
 from PIL import Image
 
 from fakesss.problem import BadInput
@@ -144,6 +145,74 @@ def test_a_picture_of_another_size_is_refused(folder: Path) -> None:
     (folder / "study.toml").write_text(f'{STUDY}[[compare]]\nimage = "offline.png"\n')
     with pytest.raises(BadInput, match=r"offline\.png': is 64x64 but the study's pictures are 48x40; resize it"):
         build(folder)
+
+
+def test_a_mesh_is_looked_for_beside_the_study_only(
+    folder: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    (folder / "study.toml").write_text(STUDY.replace("torus:4000", "thing.ply"), encoding="utf-8")
+    trimesh.creation.icosphere(1).export(tmp_path / "thing.ply")
+    monkeypatch.chdir(tmp_path)
+    with pytest.raises(BadInput, match=r"thing\.ply: cannot be read"):
+        build(folder)
+
+
+def test_an_edited_mesh_is_drawn_again(folder: Path) -> None:
+    (folder / "study.toml").write_text(STUDY.replace("torus:4000", "thing.ply"), encoding="utf-8")
+    trimesh.creation.icosphere(1).export(folder / "thing.ply")
+    before = build(folder)["stimuli"][0]["sha256"]
+    trimesh.creation.box().export(folder / "thing.ply")
+    assert build(folder)["stimuli"][0]["sha256"] != before
+    assert verify(folder) == []
+
+
+@pytest.mark.parametrize("damage", ["other bytes", "no picture", "half a description", "no description"])
+def test_a_damaged_waiting_room_is_drawn_again(folder: Path, tmp_path: Path, damage: str) -> None:
+    build(folder)
+    good, key = (
+        content(folder),
+        json.loads((folder / "stimuli" / "manifest.json").read_text())["stimuli"][0]["build_key"],
+    )
+    shutil.rmtree(folder / "stimuli")
+    waiting = folder / "stimuli" / ".build"
+    waiting.mkdir(parents=True)
+    facts = json.dumps({"sha256": hashlib.sha256(b"x").hexdigest(), "width": 1, "height": 1})
+    if damage != "no picture":
+        (waiting / f"{key}.png").write_bytes(b"y")
+    if damage != "no description":
+        (waiting / f"{key}.json").write_text(facts[:20] if damage.startswith("half") else facts)
+    build(folder)
+    assert content(folder) == good
+
+
+@pytest.mark.parametrize("text", ["{", "[]", '{"format": 1}', '{"format": 2, "stimuli": []}', '{"stimuli": [3]}'])
+def test_a_manifest_that_is_none_is_made_again(folder: Path, text: str) -> None:
+    build(folder)
+    good = content(folder)
+    (folder / "stimuli" / "manifest.json").write_text(text)
+    with pytest.raises(BadInput, match=r"fakesss build|build the study again"):
+        verify(folder)
+    build(folder)
+    assert content(folder) == good
+
+
+def test_two_builds_at_once_are_refused_in_one_sentence(folder: Path) -> None:
+    with (
+        building.one_build_at_a_time(folder / "stimuli" / ".build"),
+        pytest.raises(BadInput, match="another build of this study is running"),
+    ):
+        build(folder)
+    build(folder)
+
+
+def test_levels_without_effect_are_told(folder: Path) -> None:
+    turned = STUDY.replace("material.backlight", "camera.azimuth").replace("[1.2, 0.8]", "[0, 360]")
+    (folder / "study.toml").write_text(turned, encoding="utf-8")
+    manifest = build(folder)
+    assert manifest["stimuli"][1]["same_picture_as"] == "img01"
+    told = building.levels_without_effect(manifest)
+    assert told == ["img02: is the same picture as img01, though made differently"]
+    assert build(folder) == manifest
 
 
 def test_a_study_can_be_copied(folder: Path, tmp_path: Path) -> None:

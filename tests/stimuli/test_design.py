@@ -3,9 +3,11 @@
 import math
 from typing import Any
 
+import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from fakesss.problem import BadInput
 from stimuli.design import stimuli_of
 from stimuli.study import Study
 from stimuli.template import write_template
@@ -73,6 +75,11 @@ def test_repeats_are_drawn_by_the_seed_and_name_their_original() -> None:
     assert len(chosen) == 2
     assert all(s.id == f"{s.same_picture_as}r" and s.rows == () for s in chosen)
     assert chosen == [s for s in stimuli_of(study(design={"repeats": 2})) if s.role == "repeat"]
+
+
+def test_more_repeats_than_pictures_are_refused() -> None:
+    with pytest.raises(BadInput, match=r"design\.repeats: 5: must be <= 4"):
+        stimuli_of(study(design={"repeats": 5}))
 
 
 def test_comparison_pictures_come_after_ours_and_belong_to_no_row() -> None:
