@@ -33,7 +33,7 @@ PARTICIPANTS = {
     "mode": RATINGS["mode"],
     "status": "finished (every rating stored), active, dropped (silent for longer than the study allows), or withdrawn",
     "started_at": RATINGS["started_at"],
-    "finished_at": "when the last expected rating was stored, ISO 8601 UTC; empty: not finished",
+    "finished_at": "when the last expected rating was stored, ISO 8601 UTC; empty: not finished, or withdrawn",
     "last_seen_at": "when the participant last sent something, ISO 8601 UTC",
     "order_row": "1, 2, ...: row of the order design",
     "trials": "number of pictures to be rated",

@@ -181,11 +181,16 @@ def export_ratings(
 
 
 def mode_to_analyse(study_folder: Path, database_url: str | None = None) -> Mode:
-    """What a report is about: live answers where there are any, else simulated ones where there are any."""
-    identity = load_study(study_folder).identity
+    """What a report is about: the first of live, simulated and pilot with a rating of a real trial; live without any.
+
+    Agreeing to take part and practising are no ratings: one visitor of the live study hides nobody's answers.
+    """
+    rated = schema.ratings.join(schema.presentations).join(schema.sessions)
+    mine = and_(sessions.study == load_study(study_folder).identity, presentations.practice.is_(False))
     with open_database(database_url or default_url(study_folder)).reading() as connection:
-        found = connection.scalars(select(sessions.mode).where(sessions.study == identity).distinct()).all()
-    return "simulated" if "live" not in found and "simulated" in found else "live"
+        found = connection.scalars(select(sessions.mode).select_from(rated).where(mine).distinct()).all()
+    order: tuple[Mode, ...] = ("live", "simulated", "pilot")
+    return next((mode for mode in order if mode in found), "live")
 
 
 def write_table(folder: Path, table: str, source: Source) -> Path:

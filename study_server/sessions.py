@@ -149,8 +149,9 @@ def expected_and_stored(connection: Connection, session: str, questions: int) ->
 def withdraw(connection: Connection, session: RowMapping, now: float) -> None:
     """Delete what the participant said and who they are elsewhere.
 
-    What stays is that there was a session, and how much was deleted. An external person who returns is still known,
-    for their token follows from their name.
+    What stays is that there was a session, and how much was deleted: neither when it was finished nor the completion
+    code, which says at the recruiting service who it was. An external person who returns is still known, for their
+    token follows from their name.
     """
     deleted = 0
     for table in (schema.revisions, schema.ratings, schema.events):
@@ -161,5 +162,7 @@ def withdraw(connection: Connection, session: RowMapping, now: float) -> None:
     mine = presentations.session == session["id"]
     connection.execute(update(schema.presentations).where(mine).values(dict.fromkeys(facts)))
     connection.execute(insert(schema.withdrawals).values(session=session["id"], at=now, ratings_deleted=deleted))
-    forgotten = dict.fromkeys(("comments", "external_study", "external_participant", "external_session"))
+    forgotten = dict.fromkeys(
+        ("finished_at", "completion_code", "comments", "external_study", "external_participant", "external_session")
+    )
     advance(connection, session, now, step="withdrawn", about={}, **forgotten)

@@ -171,9 +171,13 @@ def test_an_effects_file_that_is_not_there(tmp_path: Path, built: BuiltStudy) ->
         load_effects(tmp_path / "none.toml", built)
 
 
-def test_simulated_answers_are_analysed_only_where_nobody_took_part(study: Path) -> None:
-    assert mode_to_analyse(study) == "live"
-    for mode in ("pilot", "simulated", "live"):
-        with served(study, mode=mode) as url:  # type: ignore[arg-type]
-            Participant(url).consent()
-        assert mode_to_analyse(study) == {"pilot": "live", "simulated": "simulated", "live": "live"}[mode]
+def test_what_is_analysed_are_live_then_simulated_then_pilot_ratings(study: Path) -> None:
+    modes: tuple[Mode, ...] = ("pilot", "simulated", "live")
+    before: Mode = "live"
+    for mode in modes:
+        with served(study, mode=mode) as url:
+            person = Participant(url).to_trials()  # a consent and a practice trial are no ratings
+            assert mode_to_analyse(study) == before
+            person.rate()
+        assert mode_to_analyse(study) == mode
+        before = mode

@@ -183,6 +183,29 @@ def test_a_withdrawal_deletes_and_leaves_its_mark(url: str, exported: Exported) 
     assert (who["status"], who["ratings"], who["about_age"]) == ("withdrawn", "0", "")
 
 
+def test_who_finished_and_withdrew_is_not_among_the_finished(url: str, study: Path, exported: Exported) -> None:
+    person = Participant(url).to_trials()
+    code = person.to_end()
+    assert exported("participants")[0]["finished_at"]
+    person.post("withdraw", sure="yes")
+    assert person.state["step"] == "withdrawn"
+    assert person.client.get(person.here).json()["step"] == "withdrawn"
+    [who] = exported("participants")
+    assert (who["status"], who["finished_at"]) == ("withdrawn", "")
+    with closing(sqlite3.connect(study / "ratings.sqlite")) as connection:
+        connection.execute("PRAGMA wal_checkpoint(TRUNCATE)")
+    assert code.encode() not in (study / "ratings.sqlite").read_bytes()
+
+
+def test_one_person_in_two_postings_is_one_participant_with_two_sessions(url: str, exported: Exported) -> None:
+    for posting in ("first", "second"):
+        Participant(url, f"?STUDY_ID={posting}&PROLIFIC_PID=p1").to_trials().to_end()
+    for table in ("ratings", "participants"):
+        visits = {(row["started_at"], row["session"]) for row in exported(table)}
+        assert len(visits) == len({started for started, _ in visits}) == 2
+        assert len({row["participant"] for row in exported(table)}) == 1
+
+
 def test_who_withdrew_is_forgotten_but_cannot_begin_again(url: str, study: Path, exported: Exported) -> None:
     query = "?STUDY_ID=s1&PROLIFIC_PID=a-name-to-forget&SESSION_ID=x"
     person = Participant(url, query).to_trials()
