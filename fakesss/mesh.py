@@ -5,6 +5,7 @@ times its own size away from the origin keeps its detail.
 """
 
 import hashlib
+import io
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
@@ -12,7 +13,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from fakesss import mesh_repair, vertex_normals
+from fakesss import mesh_repair, polygons, vertex_normals
 from fakesss.problem import BadInput
 
 Floats = NDArray[np.float64]
@@ -20,6 +21,7 @@ Floats32 = NDArray[np.float32]
 Faces = NDArray[np.int32]
 
 EXTENSIONS = ("obj", "ply", "stl", "glb")
+LARGEST = 1e307  # of any coordinate: the sphere around such an object has a centre and a radius in float64
 
 
 @dataclass(frozen=True, eq=False)
@@ -53,7 +55,7 @@ def load_mesh(path: str | Path) -> Mesh:
 
     A file of several parts is taken as one object, each part where the file's transforms put it. Materials and stored
     normals are not read, nor is any other file. Raises `BadInput` if the file is missing, of another kind,
-    unreadable, has a triangle with a corner that is not finite, or holds no triangle.
+    unreadable, has a corner that is not finite or not there or a polygon that cannot be cut, or holds no triangle.
     """
     path = Path(path)
     kind = path.suffix.lower().removeprefix(".")
@@ -68,26 +70,37 @@ def load_mesh(path: str | Path) -> Mesh:
 
 def read_triangles(path: Path, kind: str) -> tuple[Floats, NDArray[np.int64]]:
     """Vertices (V, 3) and triangles (F, 3) of a mesh file as they stand in it, parts concatenated."""
-    import trimesh  # slow to import, and built-in objects do not need it
-
     try:
-        with path.open("rb") as file:
-            # no resolver: a mesh file must not make us read another one
-            scene = trimesh.load_scene(file, file_type=kind, resolver=None, process=False, skip_materials=True)
-            parts: list[Any] = [part for part in scene.dump() if isinstance(part, trimesh.Trimesh) and len(part.faces)]
+        content = path.read_bytes()
+        cut = polygons.cut_obj(content) if kind == "obj" else None
+        positions, faces = cut or read_by_library(content, kind)
+        polygons.check_vertices(positions, faces)
     except OSError as error:
         raise BadInput(f"{path}: cannot be read ({error.strerror}); it must be a readable file") from None
+    except polygons.UnfitPolygons as error:
+        raise BadInput(f"{path}: {error}") from None
     except Exception as error:  # the readers raise whatever a malformed file makes them trip over
         said = str(error).splitlines()[0] if str(error) else type(error).__name__
-        raise BadInput(f"{path}: is not a valid {kind.upper()} file ({said}); export it again") from None
-    if not parts:
+        raise BadInput(f"{path}: is not a valid {kind.upper()} file ({said}); export it again in triangles") from None
+    if not len(faces):
         raise BadInput(f"{path}: holds no triangles; export the object as a triangle mesh")
-    offsets = np.cumsum([0] + [len(part.vertices) for part in parts[:-1]])
-    positions = np.concatenate([np.asarray(part.vertices, np.float64) for part in parts])
-    faces = np.concatenate(
-        [np.asarray(part.faces, np.int64) + start for part, start in zip(parts, offsets, strict=True)]
-    )
     return positions, faces
+
+
+def read_by_library(content: bytes, kind: str) -> tuple[Floats, NDArray[np.int64]]:
+    """`read_triangles` through trimesh, which raises what it likes."""
+    import trimesh  # slow to import, and built-in objects do not need it
+
+    # no resolver: a mesh file must not make us read another one
+    scene = trimesh.load_scene(io.BytesIO(content), file_type=kind, resolver=None, process=False, skip_materials=True)
+    parts: list[Any] = [part for part in scene.dump() if isinstance(part, trimesh.Trimesh) and len(part.faces)]
+    if kind == "ply" and parts and (cut := polygons.cut_ply(parts[0].metadata["_ply_raw"])):
+        return cut
+    offsets = np.cumsum([0] + [len(part.vertices) for part in parts[:-1]])
+    positions = [np.asarray(part.vertices, np.float64) for part in parts]
+    faces = [np.asarray(part.faces, np.int64) + start for part, start in zip(parts, offsets, strict=True)]
+    none = np.zeros((0, 3))
+    return np.concatenate([none, *positions]), np.concatenate([none.astype(np.int64), *faces])
 
 
 def mesh_from_triangles(positions: Floats, faces: NDArray[np.integer[Any]], source: str) -> Mesh:
@@ -97,13 +110,15 @@ def mesh_from_triangles(positions: Floats, faces: NDArray[np.integer[Any]], sour
     errors name `source`.
     """
     repairs: list[str] = []
-    faces = mesh_repair.drop_unusable_faces(positions, faces, repairs)
+    faces = mesh_repair.drop_collapsed_faces(positions, faces, repairs)
     lost = np.unique(faces[~np.isfinite(positions[faces]).all(axis=2)])
     if len(lost):  # dropping their triangles would tear holes into the shape that is studied
         count = mesh_repair.counted(len(lost), "vertex is", "vertices are")
         raise BadInput(f"{source}: {count} not finite (NaN or infinity); repair the mesh or export it again")
     if not len(faces):
         raise BadInput(f"{source}: no triangle with an extent is left; repair the mesh or export it again")
+    if np.abs(positions[faces]).max() > LARGEST:
+        raise BadInput(f"{source}: has coordinates beyond {LARGEST:g}; export it in a larger unit")
     scaled, centre, radius = into_unit_sphere(positions, faces)
     single, faces32 = mesh_repair.weld(scaled, faces, repairs)
     if not len(faces32):

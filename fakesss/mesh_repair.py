@@ -1,7 +1,7 @@
 """What is mended in a mesh on loading, and the sentences that say so.
 
-Done: triangles with a corner that is not there or with two equal corners are dropped, vertices at one place become
-one, copies of a triangle are dropped, neighbours are wound alike, closed surfaces are turned outwards.
+Done: triangles with two equal corners are dropped, vertices at one place become one, copies of a triangle are dropped,
+neighbours are wound alike, closed surfaces are turned outwards.
 Not done: holes are not filled and self-intersections are not resolved. Triangles whose corners lie on a line stay:
 they draw nothing, and dropping them would open the surface.
 """
@@ -24,14 +24,8 @@ def counted(number: int, one: str, many: str) -> str:
     return f"{number:,} {one if number == 1 else many}"
 
 
-def drop_unusable_faces(positions: Floats, faces: Indices, repairs: list[str]) -> Indices:
-    """The faces whose corners exist and are three different points."""
-    known = ((faces >= 0) & (faces < len(positions))).all(axis=1)
-    if not known.all():
-        repairs.append(
-            f"Dropped {counted(int((~known).sum()), 'triangle', 'triangles')} naming vertices that are not there."
-        )
-        faces = faces[known]
+def drop_collapsed_faces(positions: Floats, faces: Indices, repairs: list[str]) -> Indices:
+    """The faces whose corners are three different points."""
     a, b, c = (positions[faces[:, corner]] for corner in range(3))
     collapsed = (a == b).all(axis=1) | (b == c).all(axis=1) | (c == a).all(axis=1)
     if collapsed.any():
