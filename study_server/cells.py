@@ -8,6 +8,9 @@ from typing import Any
 
 ROWS_AT_ONCE = 500
 
+FORMULA_STARTS = ("=", "+", "-", "@", "\t", "\r")
+"""First characters that make a spreadsheet run a cell."""
+
 
 def csv_text(columns: Sequence[str], rows: Iterable[Mapping[str, Any]]) -> Iterator[str]:
     """Header and rows as pieces of CSV; memory does not grow with the number of rows."""
@@ -25,7 +28,7 @@ def csv_text(columns: Sequence[str], rows: Iterable[Mapping[str, Any]]) -> Itera
 
 def cell(value: Any) -> Any:
     """`value` as it stands in a cell. Text that a spreadsheet would run as a formula gets a leading apostrophe."""
-    if isinstance(value, str) and value.startswith(("=", "+", "-", "@", "\t", "\r")):
+    if isinstance(value, str) and value.startswith(FORMULA_STARTS):
         return f"'{value}"
     if isinstance(value, float):
         return f"{value:.10g}"

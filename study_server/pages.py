@@ -1,6 +1,7 @@
 """What a participant's page holds at each step: one dict, shown as HTML or sent as JSON."""
 
 import re
+from collections.abc import Collection
 from typing import Any
 
 from sqlalchemy import Connection, RowMapping
@@ -73,8 +74,18 @@ def trial_page(connection: Connection, study: BuiltStudy, session: RowMapping) -
 
 
 def filled(text: str, study: BuiltStudy) -> str:
-    """The instructions with {questions} and {scale} replaced."""
+    """The instructions with {questions}, {scale} (the longest one's steps) and {keys} replaced."""
     n = len(study.settings.question)
     count = NUMBERS[n] if n < len(NUMBERS) else f"{n} questions"
-    scale = max(question.scale for question in study.settings.question)
-    return text.replace("{questions}", count).replace("{scale}", str(scale))
+    scales = {question.scale for question in study.settings.question}
+    return text.replace("{questions}", count).replace("{scale}", str(max(scales))).replace("{keys}", key_words(scales))
+
+
+def key_words(scales: Collection[int]) -> str:
+    """Which keys answer questions of these numbers of steps (static/survey.js): 1 to 9, and 0 for 10; 11 has none."""
+    words = f"1 to {min(max(scales), 9)}"
+    if max(scales) >= 10:
+        words += ", and 0 for 10"
+    if max(scales) >= 11:
+        words += " (11 has no key)"
+    return words if len(set(scales)) == 1 else f"{words}, as far as each question's scale goes"

@@ -3,12 +3,24 @@
 from collections.abc import Mapping
 from typing import Annotated, Any, Literal, Self
 
-from pydantic import Field, model_validator
+from pydantic import AfterValidator, Field, model_validator
 
 from fakesss.problem import Strict, validated
+from study_server.cells import FORMULA_STARTS
 
 Text = Annotated[str, Field(min_length=1, max_length=20_000)]
-Name = Annotated[str, Field(min_length=1, max_length=60)]
+
+
+def not_a_formula(name: str) -> str:
+    """`name`, or `ValueError` if the export would have to put an apostrophe before it: it is a key of the tables."""
+    if name.startswith(FORMULA_STARTS):
+        raise ValueError(
+            f"a spreadsheet would run a name that begins with {name[0]!r} as a formula; begin with a letter"
+        )
+    return name
+
+
+Name = Annotated[str, Field(min_length=1, max_length=60), AfterValidator(not_a_formula)]
 
 CONSENT = """In this study you will look at pictures of objects made by a computer and say how they look to you. \
 There are no right or wrong answers.
@@ -23,7 +35,7 @@ like, then say how much you agree.
 
 Please sit as you usually do in front of your screen, and leave the page at its normal size (100% zoom).
 
-You can answer with the mouse, by touch, or with the keys 1 to {scale}. When everything is answered, press Next or the \
+You can answer with the mouse, by touch, or with the keys {keys}. When everything is answered, press Next or the \
 Enter key. Answers are saved as you go: after an interruption, open this page again and you continue where you were."""
 
 
@@ -83,7 +95,9 @@ class Survey(Strict):
     contact: str = Field("", description="whom participants can write to; shown under the consent text")
     retention: str = Field("", description="how long answers are kept; shown under the consent text")
     about: tuple[AboutField, ...] = Field(ABOUT, description="what is asked about the participant; [] asks nothing")
-    instructions: Text = Field(INSTRUCTIONS, description="shown before practice; {questions}, {scale}: filled in")
+    instructions: Text = Field(
+        INSTRUCTIONS, description="shown before practice; {questions}, {scale}, {keys}: filled in"
+    )
     practice: Annotated[int, Field(ge=0, le=20)] = Field(1, description="number of practice trials")
     order: Literal["latin-square", "random"] = Field("latin-square", description="how the orders are made")
     comments: str = Field("Is there anything you would like to tell us?", description='last question; "": not asked')

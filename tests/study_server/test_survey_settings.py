@@ -1,8 +1,13 @@
 """What study.toml may say about the survey, and the sentence when it says something else."""
 
+from pathlib import Path
+
 import pytest
+from study_fixture import write_study
 
 from fakesss.problem import BadInput
+from study_server.manifest import load_study
+from study_server.pages import filled
 from study_server.settings import check_survey
 
 QUESTION = {"name": "translucent", "text": "The object looks translucent."}
@@ -25,6 +30,8 @@ def test_the_survey_table_may_be_missing() -> None:
         ({"question": [{"name": "a"}]}, "study.toml: question[1].text: is missing; add it"),
         ({"survey": {"order": "latin"}}, "study.toml: survey.order: 'latin': must be"),
         ({"survey": {"about": [{"name": "a", "text": "?", "choces": []}]}}, "survey.about[1].choces: unknown key; did"),
+        ({"question": [{**QUESTION, "name": "-x"}]}, "study.toml: question[1].name: '-x': a spreadsheet would run"),
+        ({"survey": {"about": [{"name": "=age", "text": "?"}]}}, "begins with '=' as a formula; begin with a letter"),
         ({"survey": {"release_after_minutes": float("nan")}}, "survey.release_after_minutes"),
     ],
 )
@@ -33,6 +40,25 @@ def test_errors_name_the_key_and_the_mend(tables: dict[str, object], sentence: s
         check_survey({"question": [QUESTION], **tables}, "study.toml")
     assert sentence in str(problem.value)
     assert "\n" not in str(problem.value)
+
+
+@pytest.mark.parametrize(
+    ("scales", "words"),
+    [
+        ([2], "1 to 2"),
+        ([7, 7], "1 to 7"),
+        ([9], "1 to 9"),
+        ([10], "1 to 9, and 0 for 10"),
+        ([11], "1 to 9, and 0 for 10 (11 has no key)"),
+        ([5, 7], "1 to 7, as far as each question's scale goes"),
+    ],
+)
+def test_the_keys_in_the_instructions_exist(tmp_path: Path, scales: list[int], words: str) -> None:
+    questions = [{**QUESTION, "name": f"q{number}", "scale": scale} for number, scale in enumerate(scales)]
+    study = load_study(write_study(tmp_path, question=questions))
+    text = filled(study.settings.survey.instructions, study)
+    assert f"or with the keys {words}. When" in text
+    assert "{" not in text
 
 
 def test_a_study_without_questions_is_refused() -> None:
