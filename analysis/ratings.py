@@ -13,6 +13,7 @@ from fakesss.problem import BadInput, nearest
 REQUIRED = ("participant", "stimulus", "question", "rating")
 OPTIONAL = (
     "session",
+    "started_at",
     "mode",
     "trial",
     "presentation",
@@ -42,7 +43,8 @@ def read_ratings(
     `columns` maps our names to the file's (`{"stimulus": "photo"}`); the aliases in `ALIASES` need no mapping. `scale`
     is the highest answer, for all questions or for each; None allows any finite number. Returns `participant,
     stimulus, question` (text), `rating` (float, NaN where the file has an empty cell) and those of `OPTIONAL` that the
-    file has (text; numbers for `rt_ms`). Raises `BadInput` with the line number of the first bad row.
+    file has (text; numbers for `rt_ms`). A person's sessions stay apart, in the order of their start. Raises `BadInput`
+    with the line number of the first bad row.
     """
     path = Path(path)
     header = read_header(path)
@@ -58,8 +60,10 @@ def read_ratings(
         frame["rt_ms"] = pd.to_numeric(frame["rt_ms"], errors="coerce")
     frame = latest_revision(frame)
     refuse_duplicates(frame, path)
-    order = [c for c in ("participant", "stimulus", "question", "trial", "presentation") if c in frame]
-    return frame.sort_values(order, key=natural_ranks, kind="stable").reset_index(drop=True)
+    if "started_at" in frame:
+        frame = frame.sort_values("started_at", kind="stable")
+    order = [c for c in ("participant", "session", "stimulus", "question", "trial", "presentation") if c in frame]
+    return frame.sort_values(order, key=ranks, kind="stable").reset_index(drop=True)
 
 
 def read_header(path: Path) -> list[str]:
@@ -148,9 +152,9 @@ def latest_revision(frame: pd.DataFrame) -> pd.DataFrame:
 
 
 def refuse_duplicates(frame: pd.DataFrame, path: Path) -> None:
-    """Two answers of one person to one question about one picture, neither a repeat nor a revision, are a mistake."""
-    first_showing = ~is_repeat(frame) & ~is_check(frame)
-    key = frame.loc[first_showing, ["participant", "stimulus", "question"]]
+    """Two answers in one session to one question about one picture, neither a repeat nor a revision, are a mistake."""
+    names = [c for c in ("session", "participant", "stimulus", "question") if c in frame]
+    key = frame.loc[is_first_showing(frame), names]
     twice = key.index[key.duplicated()]
     if len(twice):
         row = frame.loc[twice[0]]
@@ -158,6 +162,11 @@ def refuse_duplicates(frame: pd.DataFrame, path: Path) -> None:
             f'{path}: line {twice[0] + 2}: participant "{row["participant"]}" rated "{row["stimulus"]}" on '
             f'"{row["question"]}" twice; delete one line, or say which is a repeat in column repeat_of'
         )
+
+
+def is_first_showing(frame: pd.DataFrame) -> "pd.Series[bool]":
+    """Rows that are neither repeats nor attention checks: what the tests are about."""
+    return ~is_repeat(frame) & ~is_check(frame)
 
 
 def is_repeat(frame: pd.DataFrame) -> "pd.Series[bool]":
@@ -174,7 +183,8 @@ def is_check(frame: pd.DataFrame) -> "pd.Series[bool]":
     return frame["check_expected"] != ""
 
 
-def natural_ranks(column: "pd.Series[str]") -> "pd.Series[int]":
-    """Each label's place in natural order, for sorting."""
-    ranks = {label: rank for rank, label in enumerate(sorted(column.unique(), key=natural_key))}
-    return column.map(ranks)
+def ranks(column: "pd.Series[str]") -> "pd.Series[int]":
+    """Each label's place, for sorting: sessions in the order in which they occur, all else in natural order."""
+    labels = list(column.unique())
+    ordered = labels if column.name == "session" else sorted(labels, key=natural_key)
+    return column.map({label: rank for rank, label in enumerate(ordered)})

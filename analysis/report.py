@@ -104,6 +104,7 @@ def results_json(
         "mode": sample.mode,
         "alpha": plan.alpha,
         "excluded": [{"participant": who, "reason": why} for who, why in sample.excluded],
+        "took_part_twice": [{"participant": who, "session_left_out": name} for who, name in sample.set_aside],
         **{name: plain(table) for name, table in tables.items()},
         "warnings": said,
         "session": origin,

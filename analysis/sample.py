@@ -7,11 +7,14 @@ import pandas as pd
 
 from analysis.labels import natural_order
 from analysis.plan import AnalysisPlan, Exclusions, Mode
-from analysis.ratings import is_check, is_repeat, of_one_mode
+from analysis.ratings import is_check, is_first_showing, of_one_mode
+from analysis.sessions import one_session_each
 from fakesss.problem import BadInput
 
 FINISHED = ("completed", "complete", "finished", "true", "yes", "1")
-FINISHED_COLUMNS = ("completed_at", "finished_at", "completed", "finished", "status", "state")
+WITHDRAWN = ("withdrawn", "withdrew")
+# a status comes first: who withdrew after the last answer has a time of finishing too
+FINISHED_COLUMNS = ("status", "state", "completed_at", "finished_at", "completed", "finished")
 
 
 @dataclass(frozen=True)
@@ -19,7 +22,7 @@ class Sample:
     """The ratings that are analysed, and the account of those that are not.
 
     `ratings` holds first showings only, without missing answers; `everything` also repeats and checks of the same
-    people.
+    people. `set_aside`: (participant, session) of those who took part twice.
     """
 
     ratings: pd.DataFrame
@@ -27,6 +30,7 @@ class Sample:
     n_started: int
     n_completed: int
     excluded: tuple[tuple[str, str], ...]
+    set_aside: tuple[tuple[str, str], ...]
     mode: Mode
     n_missing: int
 
@@ -41,13 +45,15 @@ def draw_sample(ratings: pd.DataFrame, plan: AnalysisPlan, participants: Path | 
 
     Raises `BadInput` when nobody is left.
     """
-    shown = ratings[~is_check(ratings) & ~is_repeat(ratings)]
+    ratings, set_aside = one_session_each(ratings)
+    shown = ratings[is_first_showing(ratings)]
     answered = shown.dropna(subset="rating")
     mode = choose_mode(answered, plan)
-    started, finished = people(ratings, answered, mode, participants)
+    started, finished, withdrawn = people(ratings, answered, mode, participants)
     reasons = dict(rule_breakers(ratings, plan.exclude))
     if plan.completers_only:
         reasons |= {who: "did not complete" for who in started if who not in finished}
+    reasons |= dict.fromkeys(withdrawn, "withdrew")
     kept = answered[~answered["participant"].isin(list(reasons))]
     if kept.empty:
         raise BadInput(
@@ -60,6 +66,7 @@ def draw_sample(ratings: pd.DataFrame, plan: AnalysisPlan, participants: Path | 
         n_started=len(started),
         n_completed=len(finished),
         excluded=tuple((who, reasons[who]) for who in map(str, natural_order(reasons))),
+        set_aside=set_aside,
         mode=mode,
         n_missing=int(shown.loc[~shown["participant"].isin(list(reasons)), "rating"].isna().sum()),
     )
@@ -75,23 +82,26 @@ def choose_mode(answered: pd.DataFrame, plan: AnalysisPlan) -> Mode:
 
 def people(
     ratings: pd.DataFrame, answered: pd.DataFrame, mode: Mode, participants: Path | None
-) -> tuple[list[str], set[str]]:
-    """Everyone who started, and those who completed: by the participants file, else by their ratings."""
+) -> tuple[list[str], set[str], set[str]]:
+    """Everyone who started, who completed and who withdrew: by the participants file, else by their ratings."""
     started = [str(who) for who in natural_order(ratings["participant"])]
     if participants is not None:
-        listed, finished = read_participants(participants)
+        listed, finished, withdrawn = read_participants(participants)
         started = [str(who) for who in natural_order([*started, *listed])]
         if finished is not None:
-            return started, finished
+            return started, finished, withdrawn
     if mode == "independent" and not (answered.groupby("participant")["stimulus"].nunique() > 1).any():
-        return started, set(answered["participant"])
+        return started, set(answered["participant"]), set()
     cells = answered.groupby(["stimulus", "question"]).ngroups
     count = answered.groupby("participant").size()
-    return started, {str(who) for who in count.index[count == cells]}
+    return started, {str(who) for who in count.index[count == cells]}, set()
 
 
-def read_participants(path: Path) -> tuple[list[str], set[str] | None]:
-    """The participants of one mode in a CSV, and those who finished (None where the file does not say)."""
+def read_participants(path: Path) -> tuple[list[str], set[str] | None, set[str]]:
+    """The participants of one mode in a CSV, those who finished (None where the file does not say), and who withdrew.
+
+    Who withdrew once and finished another time has finished.
+    """
     try:
         frame = pd.read_csv(path, dtype=str, keep_default_na=False, encoding="utf-8-sig")
     except FileNotFoundError:
@@ -103,10 +113,11 @@ def read_participants(path: Path) -> tuple[list[str], set[str] | None]:
     frame = of_one_mode(frame)
     column = next((name for name in FINISHED_COLUMNS if name in frame), None)
     if column is None:
-        return list(frame["participant"]), None
+        return list(frame["participant"]), None, set()
     text = frame[column].str.strip().str.lower()
     done = text != "" if column.endswith("_at") else text.isin(FINISHED)
-    return list(frame["participant"]), set(frame.loc[done, "participant"])
+    finished = set(frame.loc[done, "participant"])
+    return list(frame["participant"]), finished, set(frame.loc[text.isin(WITHDRAWN), "participant"]) - finished
 
 
 def rule_breakers(ratings: pd.DataFrame, rules: Exclusions) -> list[tuple[str, str]]:

@@ -69,6 +69,56 @@ def test_participants_file(sample: Callable[..., Sample], tmp_path: Path) -> Non
     assert [who for who, _ in drawn.excluded] == ["p3", "p10", "p11"]
 
 
+def test_who_withdrew_has_not_completed(sample: Callable[..., Sample], tmp_path: Path) -> None:
+    """Even after the last answer; who withdrew once and finished another time has completed."""
+    path = tmp_path / "participants.csv"
+    path.write_text(
+        "participant,status,finished_at\np1,finished,2026-01-01T10:00:00Z\np2,withdrawn,2026-01-01T11:00:00Z\n"
+        "p3,withdrawn,\np3,finished,2026-01-01T11:00:00Z\np10,dropped,\n"
+    )
+    drawn = sample(path)
+    assert (drawn.n_started, drawn.n_completed, drawn.n_analysed) == (4, 2, 2)
+    assert drawn.excluded == (("p2", "withdrew"), ("p10", "did not complete"))
+    assert ("p2", "withdrew") in sample(path, completers_only=False).excluded
+
+
+SESSIONS = "session,started_at,participant,stimulus,question,rating\n"
+
+
+def visit(name: str, hour: int, who: str, answers: str) -> str:
+    """A session's answers to pictures a, b, c; "-" is a missing one."""
+    cells = zip("abc", answers, strict=False)
+    return "".join(f"{name},2026-01-01T{hour:02}:00Z,{who},{what},q,{n.strip('-')}\n" for what, n in cells)
+
+
+@pytest.mark.parametrize(
+    ("first", "second", "kept", "left_out"),
+    [("123", "765", [1, 2, 3], "s2"), ("12-", "765", [7, 6, 5], "s1"), ("1", "765", [7, 6, 5], "s1")],
+)
+def test_who_took_part_twice_counts_once(
+    csv_of: Callable[[str], Path], first: str, second: str, kept: list[float], left_out: str
+) -> None:
+    """The first complete session counts, however the file is sorted."""
+    visits = visit("s2", 12, "p1", second) + visit("s1", 9, "p1", first) + visit("s3", 10, "p2", "444")
+    drawn = draw_sample(read_ratings(csv_of(SESSIONS + visits)), AnalysisPlan())
+    assert drawn.set_aside == (("p1", left_out),)
+    assert drawn.ratings.loc[drawn.ratings["participant"] == "p1", "rating"].tolist() == kept
+    assert (drawn.n_started, drawn.n_completed, len(drawn.everything)) == (2, 2, 6)
+
+
+def test_sessions_that_share_no_picture_belong_together(csv_of: Callable[[str], Path]) -> None:
+    """A study split over two days."""
+    rows = "s1,,p1,a,q,1\ns2,,p1,b,q,2\ns3,,p2,a,q,5\ns4,,p2,b,q,7\n"
+    drawn = draw_sample(read_ratings(csv_of(SESSIONS + rows)), AnalysisPlan())
+    assert (drawn.set_aside, len(drawn.ratings)) == ((), 4)
+
+
+def test_two_answers_within_one_session_are_refused(csv_of: Callable[[str], Path]) -> None:
+    """A second session is a visit; a second answer in it is a mistake."""
+    with pytest.raises(BadInput, match='line 5: participant "p1" rated "a" on "q" twice'):
+        read_ratings(csv_of(SESSIONS + visit("s1", 9, "p1", "123") + visit("s1", 9, "p1", "4")))
+
+
 def test_nobody_left(csv_of: Callable[[str], Path]) -> None:
     """A sentence, not an empty report."""
     path = csv_of("participant,stimulus,question,rating\np1,a,q,3\np2,b,q,4\np2,a,q,\np1,b,q,\np1,c,q,3\np2,c,q,1\n")
