@@ -5,6 +5,7 @@ Importing this module needs neither OpenGL nor any other part of the renderer.
 """
 
 import difflib
+import json
 from collections.abc import Iterable, Mapping, Sequence
 from types import UnionType
 from typing import Any, TypeVar, Union, get_args, get_origin
@@ -41,11 +42,19 @@ def nearest(name: str, names: Iterable[str]) -> str:
 
 
 def validated(model: type[Model], data: Mapping[str, Any], source: str) -> Model:
-    """`model` filled from `data`, or `BadInput` naming `source`, the key and the mend for the first thing wrong."""
+    """`model` filled from `data`, or `BadInput` naming `source`, the key and the mend for the first thing wrong.
+
+    Strict: no "1.5" or true for a number, no 1 for true. Read as JSON, since only there a list may fill a strict tuple.
+    """
     try:
-        return model.model_validate(data)
+        return model.model_validate_json(json.dumps(data, default=as_json), strict=True)
     except ValidationError as error:
         raise BadInput(f"{source}: {first_sentence(error, model)}") from None
+
+
+def as_json(value: Any) -> Any:
+    """What JSON has no word for: numpy's numbers and arrays as Python's, anything else (a TOML date) as its text."""
+    return value.tolist() if hasattr(value, "tolist") else str(value)
 
 
 def first_sentence(error: ValidationError, model: type[BaseModel]) -> str:

@@ -37,7 +37,7 @@ class Factor(Strict):
                 raise ValueError(
                     f"level {level!r} must be a finite number, true or false, a word, or a list of numbers"
                 )
-        return given
+        return tuple(tuple(level) if isinstance(level, list) else level for level in given)
 
 
 class Design(Strict):
@@ -124,22 +124,6 @@ def check_factor(factor: Factor, base: Scene, source: str) -> None:
         except BadInput as error:
             mend = str(error).rsplit(": ", 1)[-1]
             raise BadInput(f"{where}: level {level!r}: {mend}") from None
-        if not same_kind(level, value):
-            raise BadInput(f"{where}: level {level!r}: must be written as a {kind(value)}, like {value!r}")
         if value in seen:
             raise BadInput(f"{where}: level {level!r} stands twice; remove one")
         seen.append(value)
-
-
-def same_kind(level: Level, value: Any) -> bool:
-    """Whether a level is written as what the field holds: no "1.5" or true for a number, no 1 for true."""
-    if isinstance(level, tuple):
-        return isinstance(value, tuple) and all(map(same_kind, level, value))
-    return kind(level) == kind(value)
-
-
-def kind(value: Any) -> str:
-    """true or false, word, number or list."""
-    if isinstance(value, bool):
-        return "true or false"
-    return "word" if isinstance(value, str) else "list" if isinstance(value, tuple) else "number"
