@@ -2,6 +2,7 @@
 
 import time
 from collections.abc import Iterator
+from pathlib import Path
 from typing import Annotated
 
 from fastapi import APIRouter, Depends, Request, Response
@@ -105,7 +106,14 @@ def report(request: Request, site: Unlocked, path: str) -> Response:
         folder = site.reporter.folder(anew=path in ("", "index.html"))
     except BadInput as problem:
         return sorry(request, 200, str(problem))
-    wanted = (folder / (path or "index.html")).resolve()
-    if not wanted.is_relative_to(folder.resolve()) or not wanted.is_file():
-        return sorry(request, 404, "The report has no such file.")
-    return FileResponse(wanted)
+    wanted = file_inside(folder, path or "index.html")
+    return FileResponse(wanted) if wanted else sorry(request, 404, "The report has no such file.")
+
+
+def file_inside(folder: Path, name: str) -> Path | None:
+    """The file of that name in or under `folder`, or None."""
+    try:
+        path = (folder / name).resolve()
+        return path if path.is_relative_to(folder.resolve()) and path.is_file() else None
+    except (OSError, ValueError):  # a name that no file can have: too long, or with a NUL
+        return None

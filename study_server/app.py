@@ -12,9 +12,10 @@ from fastapi.staticfiles import StaticFiles
 from sqlalchemy.exc import DatabaseError
 from starlette.exceptions import HTTPException
 
+from fakesss.problem import BadInput
 from study_server import admin, participant, pictures
 from study_server.database import adopt_study, default_url, is_writable, open_database, secret, shown_url
-from study_server.manifest import load_study
+from study_server.manifest import load_study, study_changed
 from study_server.site import HERE, AtSite, Mode, Reporter, Site, sorry
 from study_server.web_safety import WebSafety
 
@@ -33,7 +34,7 @@ def create_app(
     """The application that serves the built study in `study_folder`; `app.state.site` is its `Site`.
 
     `database_url` defaults to ratings.sqlite in the folder. `make_report` writes the report and returns its folder.
-    Raises `BadInput` if the study is not built, a picture is not as built, or the database cannot be used.
+    Raises `BadInput` if the study is not built, study.toml or a picture is not as built, or the database is unusable.
     """
     site = open_site(Path(study_folder), database_url, mode, make_report)
     app = FastAPI(title=site.study.title, docs_url=None, redoc_url=None)
@@ -53,6 +54,11 @@ def create_app(
 def open_site(folder: Path, url: str | None, mode: Mode, make_report: Callable[[], Path] | None) -> Site:
     """Study and database, opened and matched."""
     study = load_study(folder)
+    if study_changed(study):
+        raise BadInput(
+            f"{folder / 'study.toml'}: has changed since the pictures were built; run `fakesss build {folder}`, "
+            "or restore it"
+        )
     url = url or default_url(folder)
     database = open_database(url)
     adopt_study(database, study, shown_url(url))
@@ -91,7 +97,7 @@ def not_understood(request: Request, error: Exception) -> Response:
     """A body or an address that is not of the expected form."""
     assert isinstance(error, RequestValidationError)
     first = error.errors()[0]
-    where = ".".join(str(part) for part in first["loc"])
+    where = ".".join(str(part) for part in first["loc"]).encode(errors="replace").decode()  # a key may be half a letter
     return sorry(request, 422, f"{where}: {first['msg']}.")
 
 

@@ -92,6 +92,14 @@ def load_study(folder: Path) -> BuiltStudy:
     return checked(built, path, mend)
 
 
+def study_changed(study: BuiltStudy) -> bool:
+    """Whether the folder's study.toml is another one than the pictures were built from. Without one: False."""
+    try:
+        return hashlib.sha256((study.folder / "study.toml").read_bytes()).hexdigest() != study.sha256
+    except FileNotFoundError:
+        return False
+
+
 def read_stimulus(folder: Path, entry: Mapping[str, Any], mend: str) -> Stimulus:
     """One entry of the manifest, with its picture's bytes compared against `sha256`."""
     path = folder / entry["file"]

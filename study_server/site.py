@@ -10,6 +10,7 @@ from fastapi import Depends, Request, Response
 from fastapi.responses import JSONResponse
 from fastapi.templating import Jinja2Templates
 from jinja2 import Environment, FileSystemLoader, StrictUndefined
+from starlette.exceptions import HTTPException
 
 from study_server.database import Database
 from study_server.manifest import BuiltStudy
@@ -66,17 +67,32 @@ AtSite = Annotated[Site, Depends(site_of)]
 
 
 async def posted_fields(request: Request) -> dict[str, str]:
-    """A form's fields, posted by a browser's form or as a JSON object of strings."""
+    """A form's fields, posted by a browser's form or as a JSON object of strings.
+
+    Raises `HTTPException` 400 for a body that is no JSON, 422 for text that no file could hold.
+    """
     if request.headers.get("content-type", "").startswith("application/json"):
         try:
-            data = await request.json()
-        except ValueError:
-            return {}
-        return {str(key): str(value) for key, value in data.items()} if isinstance(data, dict) else {}
+            data = await request.json() if await request.body() else {}
+        except (ValueError, RecursionError):
+            raise HTTPException(400, "The body is not JSON.") from None
+        fields = {str(key): str(value) for key, value in data.items()} if isinstance(data, dict) else {}
+        if not is_text("".join((*fields, *fields.values()))):
+            raise HTTPException(422, "The body holds half letters (lone surrogates).")
+        return fields
     return {key: value for key, value in (await request.form()).items() if isinstance(value, str)}
 
 
 Fields = Annotated[dict[str, str], Depends(posted_fields)]
+
+
+def is_text(text: str) -> bool:
+    """Whether `text` can be written as UTF-8: JSON's escapes can spell halves of letters."""
+    try:
+        text.encode()
+    except UnicodeEncodeError:
+        return False
+    return True
 
 
 def wants_json(request: Request) -> bool:

@@ -5,6 +5,7 @@ from typing import Any
 from urllib.parse import urlsplit
 
 from starlette.datastructures import Headers, MutableHeaders
+from starlette.exceptions import HTTPException
 from starlette.responses import JSONResponse
 from starlette.types import ASGIApp, Message, Receive, Scope, Send
 
@@ -30,8 +31,11 @@ HEADERS = {
 }
 
 
-class TooLarge(Exception):
-    """The body has more bytes than `BODY_LIMIT`."""
+class TooLarge(HTTPException):
+    """The body has more bytes than `BODY_LIMIT`. The framework lets this kind through where it reads JSON itself."""
+
+    def __init__(self) -> None:
+        super().__init__(413, f"More than {BODY_LIMIT} bytes were sent.")
 
 
 class WebSafety:
@@ -41,7 +45,7 @@ class WebSafety:
         self.app = app
 
     async def __call__(self, scope: Scope, receive: Receive, send: Send) -> None:
-        """Serve one request, or refuse it with 403 or 413."""
+        """Serve one request, or refuse it with 403; while its body is read, with 413."""
         if scope["type"] != "http":
             await self.app(scope, receive, send)
             return
@@ -50,11 +54,7 @@ class WebSafety:
             refusal = JSONResponse({"error": "This request came from another site and was refused."}, 403)
             await refusal(scope, receive, send)
             return
-        try:
-            await self.app(scope, limited(receive), send)
-        except TooLarge:
-            refusal = JSONResponse({"error": f"More than {BODY_LIMIT} bytes were sent."}, 413)
-            await refusal(scope, receive, send)
+        await self.app(scope, limited(receive), send)
 
 
 def is_same_origin(headers: Headers) -> bool:

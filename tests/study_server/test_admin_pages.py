@@ -100,7 +100,15 @@ def test_the_report_is_written_anew_and_nothing_else_is_served(study: Path) -> N
             assert client.get("/admin/report/").text == "<p>report 2"
             assert client.get("/admin/report/figures/a.svg").headers["content-type"].startswith("image/svg")
             assert len(written) == 2
-            for path in ("..%2fstudy.toml", "..%2fratings.sqlite", "%2fetc%2fpasswd", "figures", "none.html"):
+            for path in (
+                "..%2fstudy.toml",
+                "..%2fratings.sqlite",
+                "%2fetc%2fpasswd",
+                "figures",
+                "none.html",
+                "a%00b",
+                "x" * 5000,
+            ):
                 assert client.get(f"/admin/report/{path}").status_code == 404
 
 

@@ -1,5 +1,6 @@
 """A study is checked before anybody is let in: one sentence for whatever is wrong with the folder."""
 
+import hashlib
 import json
 from pathlib import Path
 from typing import Any
@@ -8,7 +9,9 @@ import pytest
 from study_fixture import write_study
 
 from fakesss.problem import BadInput
-from study_server.manifest import load_study
+from study_server.app import create_app
+from study_server.export import export_ratings
+from study_server.manifest import load_study, study_changed
 
 
 def edit(study: Path, change: Any) -> None:
@@ -61,6 +64,20 @@ def test_a_manifest_that_is_none(study: Path, change: Any, sentence: str) -> Non
     with pytest.raises(BadInput) as problem:
         load_study(study)
     assert sentence in str(problem.value)
+
+
+def test_a_study_edited_after_the_build_is_exported_but_not_served(study: Path, tmp_path: Path) -> None:
+    path = study / "study.toml"
+    assert not study_changed(load_study(study))  # no study.toml: nothing to compare
+    path.write_text("title = 'as built'")
+    edit(study, lambda m: m["study"].update(sha256=hashlib.sha256(path.read_bytes()).hexdigest()))
+    assert not study_changed(load_study(study))
+    create_app(study)
+    path.write_text("title = 'edited'")
+    assert study_changed(load_study(study))
+    with pytest.raises(BadInput, match=r"study\.toml: has changed since the pictures were built; run `fakesss build"):
+        create_app(study)
+    assert export_ratings(study, tmp_path / "out")
 
 
 def test_other_words_or_pictures_make_another_study(tmp_path: Path) -> None:

@@ -12,7 +12,7 @@ from survey_client import JSON, Participant
 from study_server import schema
 from study_server.app import create_app
 from study_server.serve import running, served
-from study_server.web_safety import BODY_LIMIT
+from study_server.web_safety import BODY_LIMIT, TooLarge
 
 
 @pytest.mark.parametrize("path", ["/health", "/admin", "/nothing", "/static/survey.css"])
@@ -46,6 +46,21 @@ def test_a_huge_body_is_refused_however_it_comes(url: str) -> None:
     pieces = (b"age=" + b"x" * 8192 for _ in range(20))
     form = {"Content-Type": "application/x-www-form-urlencoded"}
     assert httpx.post(f"{url}{here}/about", content=pieces, headers=form).status_code == 413
+    for step in ("about", "ratings"):
+        response = httpx.post(f"{url}{here}/{step}", json={"x": "x" * BODY_LIMIT}, headers=JSON)
+        assert (response.status_code, response.json()) == (413, response.json() | {"error": TooLarge().detail})
+
+
+@pytest.mark.parametrize("step", ["about", "ratings", "withdraw"])
+@pytest.mark.parametrize(
+    "body", [b'{"a": "x\\ud800"}', b'{"x\\udfff": "a"}', b"[" * 60_000, b'{"a":' * 10_000, b"{", b"\xff"]
+)
+def test_json_that_is_none_is_refused_without_a_crash(url: str, step: str, body: bytes) -> None:
+    here = Participant(url).consent().here
+    headers = {**JSON, "Content-Type": "application/json"}
+    response = httpx.post(f"{url}{here}/{step}", content=body, headers=headers)
+    assert response.status_code in (400, 422)
+    assert response.json()["error"]
 
 
 def test_the_studys_text_is_text(tmp_path: Path) -> None:
