@@ -63,8 +63,8 @@ class View:
 
     @property
     def clips_sphere(self) -> bool:
-        """Whether the near plane may cut the object open."""
-        return self.near > self.distance - 1
+        """Whether a clip plane may cut the object open. Fitted planes stand clear of the sphere by `SPHERE_MARGIN`."""
+        return self.near > self.distance - 1 or self.far < self.distance + 1
 
     def to_eye(self, points: NDArray[Any]) -> NDArray[np.float32]:
         """World points (N, 3) as (x right, y up, depth beyond the sphere's centre) in float32, computed in float64."""

@@ -45,6 +45,18 @@ def test_clip_planes_hold_the_sphere_and_stay_in_front_of_the_camera(distance: f
     assert view.clips_sphere == (distance - 1 < NEAREST)
 
 
+@pytest.mark.parametrize(
+    ("planes", "clips"),
+    [
+        ({"near": 2.1}, True),
+        ({"far": 3.9}, True),
+        ({"near": 2.0, "far": 4.0}, False),
+    ],
+)
+def test_either_plane_may_clip_the_sphere(planes: dict[str, float], clips: bool) -> None:
+    assert View.of(Camera(distance=3, **planes), (64, 64)).clips_sphere == clips
+
+
 @given(st.floats(0.01, 100), st.floats(1.001, 1e4), st.floats(0, 1))
 def test_depth_there_and_back(near: float, ratio: float, share: float) -> None:
     far = near * ratio
