@@ -25,6 +25,7 @@ from fakesss.texture_pool import TexturePool
 REQUIRED = 330
 MEND = "run `apt-get install libegl1 libgl1 libegl-mesa0 libgl1-mesa-dri` (Debian, Ubuntu) or install the card's driver"
 EXPLICIT_NAMES = {"libgl": "libGL.so.1", "libegl": "libEGL.so.1"}
+REFUSALS = ("create", "framebuffer is not complete")  # Mesa makes the texture and then cannot attach it
 UPLOADS_KEPT = 16  # buffers: a few meshes, so that a sweep uploads nothing twice
 
 
@@ -90,11 +91,11 @@ def first_context() -> Any:
 
 @contextmanager
 def reporting_memory(size: tuple[int, int], samples: int) -> Iterator[None]:
-    """Turn the driver's "out of memory" and its refusal of huge textures into one sentence."""
+    """Turn the driver's "out of memory" and its refusal of huge textures and framebuffers into one sentence."""
     try:
         yield
     except (moderngl.Error, MemoryError) as error:
-        if not isinstance(error, MemoryError) and "create" not in str(error):
+        if not isinstance(error, MemoryError) and not any(word in str(error) for word in REFUSALS):
             raise
         raise BadInput(
             f"OpenGL: {size[0]}x{size[1]} pixels with supersampling {samples} do not fit into memory ({error}); "

@@ -4,9 +4,11 @@ import subprocess
 import sys
 import threading
 
+import moderngl
 import pytest
 
-from fakesss.gpu import Gpu, renderer_facts, shared, warm_up_timer
+from fakesss.gpu import Gpu, renderer_facts, reporting_memory, shared, warm_up_timer
+from fakesss.problem import BadInput
 
 ASK = """
 import sys
@@ -55,3 +57,12 @@ def test_a_fresh_contexts_first_times_are_plausible(gpu: Gpu) -> None:
     thread.start()
     thread.join()
     assert 0 <= times[0] < 1e9
+
+
+@pytest.mark.gl
+@pytest.mark.parametrize("said", ["cannot create texture", "the framebuffer is not complete (INCOMPLETE_ATTACHMENT)"])
+def test_what_does_not_fit_is_one_sentence(said: str) -> None:
+    """The second is how Mesa refuses 5000x5000 pixels at supersampling 3."""
+    expected = pytest.raises(BadInput, match=r"5000x5000 pixels with supersampling 3 do not fit .*; lower size")
+    with expected, reporting_memory((5000, 5000), 3):
+        raise moderngl.Error(said)
