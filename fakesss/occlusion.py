@@ -53,7 +53,7 @@ def bake_occlusion(mesh: Mesh, rays: int = 320, sampling: Sampling = "cosine") -
         return {"values": values}
 
     key = {"version": VERSION, "mesh": mesh.sha256, "rays": rays, "sampling": sampling}
-    arrays, cached = cache.cached("occlusion", key, make)
+    arrays, cached = cache.cached("occlusion", key, {"values": (len(mesh.positions),)}, make)
     return Baked(arrays["values"], rays, cast, time.perf_counter() - started, cached)
 
 

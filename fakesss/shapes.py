@@ -16,6 +16,9 @@ DEFAULT_FACES = 60_000
 FACES = (1_000, 1_000_000)  # fewest and most triangles that a built-in object is made with
 VERSION = 8  # raised whenever a sculpture changes, so that cached ones are made again
 
+FINE_SURFACE: cache.Shapes = {"positions": ("vertices", 3), "faces": ("triangles", 3)}
+SCULPTURE: cache.Shapes = {**FINE_SURFACE, "normals": ("vertices", 3)}
+
 Box = tuple[tuple[float, float, float], tuple[float, float, float]]
 
 SCULPTURES: dict[str, tuple[Distance, Box]] = {
@@ -75,7 +78,7 @@ def built_in(shape: str, faces: int = DEFAULT_FACES) -> Mesh:
     if shape in SOLIDS:
         return mesh_from_surface(*SOLIDS[shape](faces))
     key = {"version": VERSION, "shape": shape, "faces": faces}
-    arrays, _ = cache.cached("shapes", key, lambda: sculpture(shape, faces))
+    arrays, _ = cache.cached("shapes", key, SCULPTURE, lambda: sculpture(shape, faces))
     return mesh_from_surface(arrays["positions"], arrays["normals"], arrays["faces"])
 
 
@@ -90,7 +93,7 @@ def sculpture(shape: str, faces: int) -> cache.Arrays:
         vertices, triangles = isosurface.fine_surface(field, box, cut)
         return {"positions": vertices, "faces": triangles}
 
-    fine, _ = cache.cached("shapes", {"version": VERSION, "shape": shape, "cut": cut}, make)
+    fine, _ = cache.cached("shapes", {"version": VERSION, "shape": shape, "cut": cut}, FINE_SURFACE, make)
     vertices, triangles = fine["positions"], fine["faces"]
     if faces < cut:
         vertices, triangles = isosurface.simplified(field, vertices, triangles, faces)
