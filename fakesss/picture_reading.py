@@ -10,6 +10,10 @@ from PIL import Image, ImageCms, UnidentifiedImageError
 from fakesss.problem import BadInput
 
 SRGB_GAMMA = (0.45454, 0.45455, 0.45456)  # how encoders round 1/2.2 in a gAMA chunk beside or instead of sRGB
+SRGB_PRIMARIES = (0.3127, 0.329, 0.64, 0.33, 0.3, 0.6, 0.15, 0.06)  # white, red, green, blue in x and y: PNG's cHRM
+SRGB_CICP = bytes([1, 13, 0, 1])  # H.273: BT.709 primaries, sRGB's curve, RGB, full range
+UPRIGHT = (0, 1)  # EXIF orientations that need no turning; 0 is written for "unknown"
+ORIENTATION = 0x0112
 PNG_BIT_DEPTH = 24  # offset of the byte in the header
 MOST_PIXELS = 16384 * 16384
 
@@ -18,7 +22,7 @@ def read_picture(path: str | Path) -> tuple[NDArray[np.uint8], tuple[str, ...]]:
     """8-bit sRGB pixels (H, W, 3), top row first, and warnings; `BadInput` for anything else.
 
     Accepted: 8-bit RGB, RGBA without transparency, and grey; tagged as sRGB (chunk, EXIF or profile), or untagged with
-    a warning. Refused: 16-bit, palette, CMYK, transparent, animated, other profiles, other gammas.
+    a warning. Refused: 16-bit, palette, CMYK, transparent, animated, to be turned, other profiles, primaries or gammas.
     """
     path = Path(path)
     data = content(path)
@@ -29,9 +33,11 @@ def read_picture(path: str | Path) -> tuple[NDArray[np.uint8], tuple[str, ...]]:
         raise BadInput(f"{path}: has pixels of kind {picture.mode}; save it as 8-bit RGB in sRGB")
     if picture.format == "PNG" and data[PNG_BIT_DEPTH] != 8:  # Pillow reads 16-bit RGB as 8-bit without a word
         raise BadInput(f"{path}: has {data[PNG_BIT_DEPTH]} bits a channel; save it as 8-bit RGB in sRGB")
-    if picture.mode == "RGBA" and np.asarray(picture)[..., 3].min() != 255:
+    if picture.has_transparency_data and np.asarray(picture.convert("RGBA"))[..., 3].min() != 255:
         raise BadInput(f"{path}: is partly transparent; flatten it onto its background and save it as RGB")
-    warnings = check_colour_space(path, picture)
+    if picture.getexif().get(ORIENTATION, 1) not in UPRIGHT:
+        raise BadInput(f"{path}: is to be turned when shown (its EXIF orientation is not 1); rotate and save it")
+    warnings = check_colour_space(path, picture, data)
     return np.asarray(picture.convert("RGB")), warnings
 
 
@@ -52,13 +58,24 @@ def opened(path: Path, data: bytes) -> Image.Image:
         if picture.width * picture.height > MOST_PIXELS:
             raise BadInput(f"{path}: is {picture.width}x{picture.height} pixels; resize it to the study's pictures")
         picture.load()
-    except (UnidentifiedImageError, OSError, SyntaxError, Image.DecompressionBombError) as error:
+    except UnidentifiedImageError:
+        raise BadInput(f"{path}: cannot be read as a picture; save it as PNG") from None
+    except (OSError, SyntaxError, ValueError, Image.DecompressionBombError) as error:
+        if isinstance(error, BadInput):
+            raise
         raise BadInput(f"{path}: cannot be read as a picture ({error}); save it as PNG") from None
     return picture
 
 
-def check_colour_space(path: Path, picture: Image.Image) -> tuple[str, ...]:
-    """Warnings about the picture's colour space, or `BadInput` if it is known not to be sRGB."""
+def check_colour_space(path: Path, picture: Image.Image, data: bytes) -> tuple[str, ...]:
+    """Warnings about the picture's colour space, or `BadInput` if it is known not to be sRGB.
+
+    In the order of precedence of PNG's third edition: cICP, iCCP, sRGB, then gAMA and cHRM.
+    """
+    if picture.format == "PNG" and (code := png_cicp(data)) is not None:
+        if code != SRGB_CICP:
+            raise BadInput(f"{path}: states another colour space (cICP {'-'.join(map(str, code))}); convert it to sRGB")
+        return ()
     if profile := picture.info.get("icc_profile"):
         name = profile_name(profile)
         if "srgb" not in name.lower():
@@ -69,7 +86,21 @@ def check_colour_space(path: Path, picture: Image.Image) -> tuple[str, ...]:
     gamma = picture.info.get("gamma")
     if gamma is not None and all(abs(gamma - known) > 1e-4 for known in SRGB_GAMMA):
         raise BadInput(f"{path}: states a gamma of {gamma}, which is not sRGB's; convert it to sRGB")
+    primaries = picture.info.get("chromaticity", SRGB_PRIMARIES)
+    if not np.allclose(primaries, SRGB_PRIMARIES, rtol=0, atol=2e-3):
+        raise BadInput(f"{path}: states primaries that are not sRGB's; convert it to sRGB")
     return (f"{path.name}: states no colour space; taken as sRGB",)
+
+
+def png_cicp(data: bytes) -> bytes | None:
+    """The coding-independent code points of a PNG, which Pillow passes over; None without them."""
+    place = 8
+    while place + 8 <= len(data):
+        length, kind = int.from_bytes(data[place : place + 4], "big"), data[place + 4 : place + 8]
+        if kind == b"cICP":
+            return data[place + 8 : place + 8 + length]
+        place += 12 + length
+    return None
 
 
 def profile_name(profile: bytes) -> str:

@@ -82,13 +82,32 @@ def test_what_is_accepted_from_elsewhere(tmp_path: Path, pixels: NDArray[np.uint
     assert untagged[1] == ("plain.png: states no colour space; taken as sRGB",)
 
 
-def png_with_gamma(pixels: NDArray[np.uint8], gamma: int) -> bytes:
+def png_with(pixels: NDArray[np.uint8], kind: bytes, content: bytes) -> bytes:
     from PIL import PngImagePlugin
 
     chunks, file = PngImagePlugin.PngInfo(), io.BytesIO()
-    chunks.add(b"gAMA", gamma.to_bytes(4, "big"))
+    chunks.add(kind, content)
     Image.fromarray(pixels).save(file, "PNG", pnginfo=chunks)
     return file.getvalue()
+
+
+ADOBE_RGB = (31270, 32900, 64000, 33000, 21000, 71000, 15000, 6000)
+SRGB = (31270, 32900, 64000, 33000, 30000, 60000, 15000, 6000)
+
+
+def chromaticities(values: tuple[int, ...]) -> bytes:
+    return b"".join(value.to_bytes(4, "big") for value in values)
+
+
+def test_statements_of_srgb_in_other_words_are_accepted(tmp_path: Path, pixels: NDArray[np.uint8]) -> None:
+    path = tmp_path / "picture.png"
+    path.write_bytes(png_with(pixels, b"cHRM", chromaticities(SRGB)))
+    assert len(read_picture(path)[1]) == 1  # primaries alone leave the curve open
+    path.write_bytes(png_with(pixels, b"cICP", bytes([1, 13, 0, 1])))
+    assert read_picture(path)[1] == ()
+    exif = Image.Exif()
+    exif[0x0112] = 1
+    np.testing.assert_array_equal(read_picture(saved(path, Image.fromarray(pixels), exif=exif))[0], pixels)
 
 
 def refused(folder: Path, kind: str, pixels: NDArray[np.uint8]) -> Path:
@@ -97,7 +116,17 @@ def refused(folder: Path, kind: str, pixels: NDArray[np.uint8]) -> Path:
     if kind == "lab profile":
         return saved(path, picture, icc_profile=lab_profile())
     if kind == "gamma":
-        path.write_bytes(png_with_gamma(pixels, 100_000))
+        path.write_bytes(png_with(pixels, b"gAMA", (100_000).to_bytes(4, "big")))
+    elif kind == "primaries":
+        path.write_bytes(png_with(pixels, b"cHRM", chromaticities(ADOBE_RGB)))
+    elif kind == "cicp":
+        path.write_bytes(png_with(pixels, b"cICP", bytes([9, 16, 0, 1])))
+    elif kind == "a transparent colour":
+        return saved(path, picture, transparency=tuple(int(value) for value in pixels[3, 3]))
+    elif kind == "to be turned":
+        turned = Image.Exif()
+        turned[0x0112] = 6
+        return saved(path, picture, exif=turned)
     elif kind == "16 bit grey":
         return saved(path, Image.fromarray(pixels[..., 0].astype(np.uint16) * 257))
     elif kind == "palette":
@@ -133,12 +162,16 @@ def rgb16() -> bytes:
     [
         ("lab profile", "convert it to sRGB"),
         ("gamma", "states a gamma of 1.0"),
+        ("primaries", "states primaries that are not sRGB's"),
+        ("cicp", "cICP 9-16-0-1"),
+        ("a transparent colour", "partly transparent"),
+        ("to be turned", "rotate and save it"),
         ("16 bit grey", "8-bit RGB"),
         ("16 bit rgb", "16 bits a channel"),
         ("palette", "pixels of kind P"),
         ("transparent", "partly transparent"),
         ("animated", "animation"),
-        ("not a picture", "cannot be read as a picture"),
+        ("not a picture", "cannot be read as a picture; save it as PNG"),
         ("cut off", "cannot be read as a picture"),
         ("missing", "no such picture"),
     ],
