@@ -59,7 +59,7 @@ def check_vertices(positions: Floats, corners: NDArray[np.integer[Any]]) -> None
 def best_fans(positions: Floats, block: Indices) -> tuple[Indices, NDArray[np.bool_]]:
     """For polygons (N, k) the corner to fan from, the first that fits, and whether one does."""
     points = positions[block]
-    finite = np.isfinite(points).all(axis=(1, 2))  # the others are refused later, for what they are
+    finite = np.asarray(np.isfinite(points).all(axis=(1, 2)))  # the others are refused later, for what they are
     points = np.where(finite[:, None, None], points, 0)
     points = points / max(np.abs(points).max(), np.finfo(float).tiny)
     points = points - points[:, :1]
@@ -69,7 +69,7 @@ def best_fans(positions: Floats, block: Indices) -> tuple[Indices, NDArray[np.bo
     area = np.sqrt((normal**2).sum(axis=1))
     unit: Floats = normal / np.where(area > 0, area, 1)[:, None]
     first = np.zeros(len(block), np.int64)
-    fits = np.asarray(area < SLIVER)
+    fits = area < SLIVER
     if block.shape[1] == 3:
         fits[:] = True
     for corner in range(block.shape[1]):
