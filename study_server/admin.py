@@ -36,7 +36,7 @@ Unlocked = Annotated[Site, Depends(unlocked)]
 
 def ask_secret(request: Request, _: Exception) -> Response:
     """The door."""
-    if site_of(request).throttle.is_closed():
+    if "authorization" in request.headers and site_of(request).throttle.is_closed():
         return sorry(request, 429, TOO_MANY)
     data = {"step": "login", "title": "Admin", "error": "The admin secret is needed."}
     response = answer(request, "login.html", data, 401)
@@ -47,9 +47,9 @@ def ask_secret(request: Request, _: Exception) -> Response:
 @router.post("/login")
 def login(request: Request, site: AtSite, fields: Fields) -> Response:
     """Opens the door to the browser that brings the secret."""
-    if site.throttle.is_closed():
-        return sorry(request, 429, TOO_MANY)
     if not is_secret(site, fields.get("secret", "").strip()):
+        if site.throttle.is_closed():
+            return sorry(request, 429, TOO_MANY)
         site.throttle.note()
         data = {"step": "login", "title": "Admin", "error": "That is not the admin secret of this study."}
         return answer(request, "login.html", data, 401)

@@ -14,7 +14,8 @@ from starlette.exceptions import HTTPException
 
 from fakesss.problem import BadInput
 from study_server import admin, participant, pictures
-from study_server.database import adopt_study, default_url, is_writable, open_database, secret, shown_url
+from study_server.admin_door import SHORTEST_SECRET
+from study_server.database import Database, adopt_study, default_url, is_writable, open_database, secret, shown_url
 from study_server.manifest import load_study, study_changed
 from study_server.site import HERE, AtSite, Mode, Reporter, Site, sorry
 from study_server.web_safety import WebSafety
@@ -68,15 +69,22 @@ def open_site(folder: Path, url: str | None, mode: Mode, make_report: Callable[[
         mode=mode,
         signing_key=f"{secret(database, 'signing_key')} {mode} {study.identity}",
         salt=secret(database, "salt"),
-        admin_secret=os.environ.get(SECRET_VARIABLE) or secret(database, "admin_secret"),
+        admin_secret=chosen_secret(database),
         reporter=Reporter(make_report) if make_report else None,
     )
 
 
 def admin_secret(study_folder: Path, database_url: str | None = None) -> str:
     """The secret that opens /admin of this study: from FAKESSS_ADMIN_SECRET, or kept in its database."""
-    given = os.environ.get(SECRET_VARIABLE)
-    return given or secret(open_database(database_url or default_url(Path(study_folder))), "admin_secret")
+    return chosen_secret(open_database(database_url or default_url(Path(study_folder))))
+
+
+def chosen_secret(database: Database) -> str:
+    """The environment's secret or else the database's; `BadInput` if the environment's is too short."""
+    given = os.environ.get(SECRET_VARIABLE, "")
+    if 0 < len(given) < SHORTEST_SECRET:
+        raise BadInput(f"{SECRET_VARIABLE}: has {len(given)} characters; give at least {SHORTEST_SECRET}, or none")
+    return given or secret(database, "admin_secret")
 
 
 def health(site: AtSite) -> Response:

@@ -1,5 +1,7 @@
 """Every column of every exported table, described: the codebook."""
 
+FIRST = "; of the first showing, also where a revision counts"
+
 RATINGS = {
     "session": "public name of the session; one person's visit",
     "participant": "pseudonym of the person: the same for all sessions of one recruiting-service participant",
@@ -11,18 +13,19 @@ RATINGS = {
     "question": "name of the question in study.toml",
     "rating": "1 .. number of steps of the question; empty: not answered",
     "rt_ms": "milliseconds from the first frame with the picture to the (last) choice of this answer",
-    "shown_at": "when the picture came on screen, ISO 8601 UTC, by the server's clock",
+    "shown_at": "when the picture came on screen, ISO 8601 UTC, by the server's clock; of the answer in this row",
     "answered_at": "when the answer was chosen, ISO 8601 UTC, by the server's clock",
     "revision": "0: the first answer; n: the n-th different answer sent afterwards, which counts (earlier: events.csv)",
     "repeat_of": "id of the stimulus that this one shows again; empty otherwise",
     "check_expected": "the instructed answer, for an attention check; empty otherwise",
     "check_passed": "1 if the instructed answer was given, 0 if not; empty otherwise",
-    "device_pixel_ratio": "device pixels per CSS pixel, zoom included",
-    "zoom": "estimated page zoom, 1 = 100%",
-    "drawn_width_px": "width of the picture on screen in device pixels; equals the file's width if it was not scaled",
-    "window_width_px": "width of the browser's viewport, CSS pixels",
-    "window_height_px": "height of the browser's viewport, CSS pixels",
-    "focus_lost_ms": "milliseconds of the trial during which the page was hidden or not in front",
+    "device_pixel_ratio": "device pixels per CSS pixel, zoom included" + FIRST,
+    "zoom": "estimated page zoom, 1 = 100%" + FIRST,
+    "drawn_width_px": "width of the picture on screen in device pixels; equals the file's width if it was not scaled"
+    + FIRST,
+    "window_width_px": "width of the browser's viewport, CSS pixels" + FIRST,
+    "window_height_px": "height of the browser's viewport, CSS pixels" + FIRST,
+    "focus_lost_ms": "milliseconds of the trial during which the page was hidden or not in front" + FIRST,
     "study_sha256": "SHA-256 of study.toml",
     "stimulus_sha256": "SHA-256 of the picture's file, checked in the browser before it was shown",
 }

@@ -7,7 +7,7 @@ people use a scale: no anchoring, no fatigue, no learning, no order effects.
 """
 
 import tomllib
-from collections.abc import Mapping
+from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -73,14 +73,26 @@ def check_factors(effects: QuestionEffects, study: BuiltStudy, where: str) -> No
     for name in [*effects.slopes, *effects.levels]:
         if name not in known:
             raise BadInput(f'{where}: "{name}" is no factor of the study; {nearest(name, known)}')
+    for table, names in (("slopes", effects.slopes), ("levels", effects.levels)):
+        refuse_aliases(names, lambda name: known[name]["name"], f"{where}.{table}")
     for name in effects.slopes:
         if not all(isinstance(level, int | float) for level in known[name]["levels"]):
             raise BadInput(f'{where}.slopes: the levels of "{name}" are not numbers; use levels instead')
     for name, shifts in effects.levels.items():
+        refuse_aliases(shifts, level_key, f'{where}.levels."{name}"')
         levels = [level_key(level) for level in known[name]["levels"]]
         for level in shifts:
             if level_key(level) not in levels:
                 raise BadInput(f'{where}.levels."{name}": "{level}" is no level of it; {nearest(level, levels)}')
+
+
+def refuse_aliases(names: Iterable[str], meant: Callable[[str], str], where: str) -> None:
+    """`BadInput` if two of `names` mean the same: their effects would be added without a word."""
+    seen: dict[str, str] = {}
+    for name in names:
+        other = seen.setdefault(meant(name), name)
+        if other != name:
+            raise BadInput(f'{where}: "{other}" and "{name}" are the same; keep one of them')
 
 
 def default_effects(study: BuiltStudy) -> Effects:

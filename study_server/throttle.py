@@ -1,4 +1,4 @@
-"""A brake on guessing: after too many wrong tries, further ones are not even looked at for a while."""
+"""Counts wrong guesses of the secret: too many within a minute are told so. The right one is never kept waiting."""
 
 import threading
 import time
@@ -6,7 +6,7 @@ from collections import deque
 from dataclasses import dataclass, field
 
 GUESSES = 10
-"""Wrong tries within `GUESS_WINDOW_S` seconds, from wherever they come, that close the door."""
+"""Wrong tries within `GUESS_WINDOW_S` seconds, from wherever they come, after which further wrong ones get 429."""
 
 GUESS_WINDOW_S = 60.0
 

@@ -44,14 +44,21 @@ def make_token(key: str, external: External | None) -> str:
         nonce = secrets.token_bytes(BYTES)
     else:
         nonce = proof(key, f"person\0{external.study}\0{external.participant}".encode())
-    return base64.urlsafe_b64encode(nonce + proof(key, nonce)).decode().rstrip("=")
+    return written(nonce + proof(key, nonce))
+
+
+def written(raw: bytes) -> str:
+    """`raw` as it stands in an address."""
+    return base64.urlsafe_b64encode(raw).decode().rstrip("=")
 
 
 def is_valid(key: str, token: str) -> bool:
-    """Whether `token` was made with `key`."""
+    """Whether `token` was made with `key`, to the letter: decoding alone passes over foreign and surplus ones."""
     try:
         raw = base64.urlsafe_b64decode(token + "=")
     except ValueError:
+        return False
+    if written(raw) != token:
         return False
     return len(raw) == 2 * BYTES and hmac.compare_digest(proof(key, raw[:BYTES]), raw[BYTES:])
 

@@ -8,7 +8,7 @@ import pytest
 from survey_client import JSON, Participant
 
 from fakesss.problem import BadInput
-from study_server.app import admin_secret
+from study_server.app import admin_secret, create_app
 from study_server.serve import served
 from study_server.throttle import GUESSES
 
@@ -44,10 +44,23 @@ def test_the_cookie_opens_and_a_forged_one_does_not(url: str, study: Path) -> No
         assert httpx.get(f"{url}/admin", headers={"Cookie": f"fakesss_admin={forged}"}).status_code == 401
 
 
-def test_guessing_is_slowed_down(url: str, study: Path) -> None:
+def test_guessing_is_told_to_stop_and_locks_nobody_out(url: str, study: Path) -> None:
     statuses = [httpx.post(f"{url}/admin/login", data={"secret": "x"}).status_code for _ in range(GUESSES + 1)]
     assert statuses == [401] * GUESSES + [429]
-    assert httpx.post(f"{url}/admin/login", data={"secret": admin_secret(study)}).status_code == 429
+    bearer = {"Authorization": "Bearer wrong"}
+    assert httpx.get(f"{url}/admin", headers=bearer).status_code == 429
+    assert httpx.get(f"{url}/admin").status_code == 401  # the form to log in by
+    assert httpx.post(f"{url}/admin/login", data={"secret": admin_secret(study)}).status_code == 303
+    bearer = {"Authorization": f"Bearer {admin_secret(study)}"}
+    assert httpx.get(f"{url}/admin", headers=bearer).status_code == 200
+
+
+def test_a_secret_that_could_be_guessed_is_refused(study: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setenv("FAKESSS_ADMIN_SECRET", "secret")
+    with pytest.raises(BadInput, match="FAKESSS_ADMIN_SECRET: has 6 characters; give at least 16"):
+        create_app(study)
+    with pytest.raises(BadInput, match="FAKESSS_ADMIN_SECRET"):
+        admin_secret(study)
 
 
 def test_the_environment_may_set_the_secret(study: Path, monkeypatch: pytest.MonkeyPatch) -> None:

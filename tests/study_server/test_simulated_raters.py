@@ -153,6 +153,18 @@ def test_an_effects_file(tmp_path: Path, built: BuiltStudy) -> None:
         ),
         ("[question.translucent.levels.backlight]\n0.9 = 1", "must"),
         ('[question.translucent.levels.backlight]\n"0.9" = 1', '"0.9" is no level of it'),
+        (
+            '[question.translucent.slopes]\nbacklight = 1\n"material.backlight" = 1',
+            'slopes: "backlight" and "material.backlight" are the same; keep one of them',
+        ),
+        (
+            '[question.translucent.levels]\nbacklight = {"0.8" = 1}\n"material.backlight" = {"1.6" = 1}',
+            'levels: "backlight" and "material.backlight" are the same',
+        ),
+        (
+            '[question.translucent.levels."diffuse weight"]\n"0" = -1\n"0.0" = -1',
+            'levels."diffuse weight": "0" and "0.0" are the same',
+        ),
         ("noise_sd = -1", "noise_sd: -1"),
         ("noise_sd =", "is not TOML"),
     ],

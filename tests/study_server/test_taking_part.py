@@ -5,6 +5,7 @@ from collections.abc import Callable
 from concurrent.futures import ThreadPoolExecutor
 from contextlib import closing
 from pathlib import Path
+from string import ascii_lowercase, ascii_uppercase, digits
 
 import httpx
 import pytest
@@ -14,6 +15,7 @@ from survey_client import ABOUT, JSON, Participant
 from study_server.serve import served
 
 Exported = Callable[..., list[dict[str, str]]]
+LETTERS = f"{ascii_uppercase}{ascii_lowercase}{digits}-_"
 
 
 def test_the_whole_way(url: str, exported: Exported) -> None:
@@ -62,10 +64,15 @@ def test_a_different_answer_is_a_revision_and_history_stays(url: str, exported: 
     person = Participant(url).to_trials()
     first = person.answers(2)
     person.send(first)
-    person.send(person.answers(5, submission="another-tab"))
+    display = {**first["display"], "zoom": 2, "drawn_width_px": 40}
+    person.send(person.answers(5, submission="another-tab", display=display))
     person.send(first)  # a late retry of the first one must not undo the second
     answered = [row for row in exported() if row["rating"]]
     assert [(row["rating"], row["revision"]) for row in answered] == [("5", "1")] * 2
+    assert [(row["zoom"], row["drawn_width_px"]) for row in answered] == [("1", "96")] * 2  # as the codebook says
+    described = {row["column"]: row["description"] for row in exported("codebook") if row["table"] == "ratings.csv"}
+    for column in first["display"]:
+        assert described[column].endswith("of the first showing, also where a revision counts")
     revised = [event for event in exported("events") if event["kind"] == "revised"]
     assert len(revised) == 2
     assert '"from": 2' in revised[0]["detail"]
@@ -166,6 +173,16 @@ def test_addresses_that_are_nobodys(url: str, path: str) -> None:
     response = httpx.get(f"{url}{path}", headers=JSON)
     assert response.status_code == 404
     assert "error" in response.json()
+
+
+def test_an_address_has_one_spelling(url: str, exported: Exported) -> None:
+    person = Participant(url).consent()
+    token = person.here.removeprefix("/s/")
+    last = LETTERS[LETTERS.index(token[-1]) + 1]  # differs in bits that belong to no byte
+    for alias in (f"{token}!", f"!{token}", f"{token[:9]}%0A{token[9:]}", f"{token}=", f"{token}==", token[:-1] + last):
+        assert httpx.get(f"{url}/s/{alias}", headers=JSON).status_code == 404
+        assert httpx.post(f"{url}/s/{alias}/consent", headers=JSON).status_code == 404
+    assert len(exported("participants")) == 1
 
 
 def test_a_withdrawal_deletes_and_leaves_its_mark(url: str, exported: Exported) -> None:
