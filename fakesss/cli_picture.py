@@ -1,5 +1,6 @@
 """Commands about pictures and this machine: render, explain, bake, doctor."""
 
+import re
 import sys
 import tomllib
 from collections.abc import Callable, Iterator, Mapping
@@ -10,6 +11,8 @@ import click
 
 from fakesss.cli import AS_JSON, commands, done, say
 from fakesss.problem import BadInput
+
+STUDY_KEYS = {"title", "scene", "factor", "question"}  # a scene file has none of them
 
 
 def drawing(command: Callable[..., None]) -> Callable[..., None]:
@@ -94,22 +97,42 @@ def doctor(as_json: bool) -> None:
 
 def scene_named(name: str, changes: tuple[str, ...], size: str | None) -> Any:
     """The `Scene` that a command line argument means, with `--set` and `--size` applied."""
-    from fakesss.scene import Scene
+    from fakesss.scene import Scene, read_toml
+    from fakesss.shapes import names
 
     path = Path(name)
     if "#" in name and not path.exists():
         scene = scene_of_stimulus(name)
-    elif path.suffix == ".toml":
+    elif path.suffix == ".toml" and not path.is_dir():
+        refuse_study(path, read_toml(path))
         scene = Scene.load(path)
+    elif path.is_dir() and name not in names():
+        raise is_folder(path)
     else:
         scene = Scene(object=name)
     overrides = dict(setting(text) for text in changes)
-    if size is not None:
-        width, cross, height = size.partition("x")
-        if not (cross and width.isdigit() and height.isdigit()):
-            raise BadInput(f'--size "{size}": write width x height in pixels, for example 512x512')
-        overrides["size"] = [int(width), int(height)]
-    return scene.replace(overrides, "--set") if overrides else scene
+    scene = scene.replace(overrides, "--set") if overrides else scene
+    return scene if size is None else scene.replace({"size": pixels(size)}, f'--size "{size}"')
+
+
+def pixels(size: str) -> list[int]:
+    """`512x512` as width and height."""
+    if not re.fullmatch("[0-9]{1,9}x[0-9]{1,9}", size):
+        raise BadInput(f'--size "{size}": write width x height in pixels, for example 512x512')
+    return [int(side) for side in size.split("x")]
+
+
+def refuse_study(path: Path, tables: Mapping[str, Any]) -> None:
+    """`BadInput` where a TOML file holds a study, which is many pictures, instead of a scene."""
+    if STUDY_KEYS & tables.keys():
+        raise BadInput(f"{path}: is a study; build it and name one of its pictures, for example {path.parent}#img01")
+
+
+def is_folder(path: Path) -> BadInput:
+    """What is to be said of a folder where a scene is asked for."""
+    if (path / "study.toml").is_file():
+        return BadInput(f"{path}: is a study; build it and name one of its pictures, for example {path}#img01")
+    return BadInput(f"{path}: is a folder; name a scene's TOML file, a mesh file or a built-in object")
 
 
 def setting(text: str) -> tuple[str, Any]:
