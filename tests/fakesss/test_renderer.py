@@ -2,49 +2,20 @@
 
 import subprocess
 import sys
-from pathlib import Path
 from typing import Any
 
 import numpy as np
 import pytest
-import trimesh
 from numpy.typing import NDArray
-from scipy.ndimage import binary_erosion
+from picture_scenes import dark
 
-from fakesss import brdf, render
+from fakesss import brdf
 from fakesss.camera import View, direction
 from fakesss.colour import decode_srgb, to_8bit
-from fakesss.image_io import encode_png, read_picture
-from fakesss.problem import BadInput
-from fakesss.renderer import Renderer, render_file
+from fakesss.renderer import Renderer
 from fakesss.scene import Scene
 
 pytestmark = pytest.mark.gl
-
-DARK = {
-    "light.ambient": (0, 0, 0),
-    "light.diffuse": (0, 0, 0),
-    "light.specular": (0, 0, 0),
-    "material.backlight": 0.0,
-    "supersampling": 1,
-    "background": (0, 0, 0),
-    "exposure": 1.0,
-    "size": (96, 96),
-    "object": "sphere:20000",
-}
-
-
-def dark(**changes: Any) -> Scene:
-    """A sphere without any light, and then `changes` with __ for the dot."""
-    return Scene().replace({**DARK, **{path.replace("__", "."): value for path, value in changes.items()}})
-
-
-def sheet_file(folder: Path) -> str:
-    """An open square facing +z, wound counter-clockwise."""
-    path = folder / "sheet.ply"
-    corners = [[-1, -1, 0], [1, -1, 0], [1, 1, 0], [-1, 1, 0]]
-    trimesh.Trimesh(corners, [[0, 1, 2], [0, 2, 3]], process=False).export(path)
-    return str(path)
 
 
 def test_white_furnace_of_the_ambient_term(renderer: Renderer) -> None:
@@ -202,52 +173,6 @@ def test_every_pixel_is_finite(renderer: Renderer, changes: dict[str, Any], styl
     assert renderer.render(scene).non_finite == 0
 
 
-def test_thickness_does_not_depend_on_the_cameras_distance(renderer: Renderer) -> None:
-    """Far cameras see the same lengths: the layers are measured from the sphere's centre."""
-    scene = dark(object="sphere:60000", size=(1, 1), camera__field_of_view=1.0)
-    straight_through = [
-        float(renderer.data(scene.replace({"camera.distance": distance}), ("thickness",))["thickness"][0, 0])
-        for distance in (2.0, 100.0, 1e4)
-    ]
-    assert straight_through[0] == pytest.approx(1, abs=1e-3)
-    assert straight_through == pytest.approx([straight_through[0]] * 3, abs=1e-4)
-
-
-@pytest.mark.parametrize(("policy", "expected"), [("thin", 0.0), ("thick", 1.0)])
-@pytest.mark.parametrize("layer", ["thickness", "blurred_thickness"])
-@pytest.mark.parametrize("azimuth", [0.0, 180.0])
-def test_an_open_sheet_follows_the_stated_policy(
-    renderer: Renderer, tmp_path: Path, policy: str, expected: float, layer: str, azimuth: float
-) -> None:
-    scene = Scene(object=sheet_file(tmp_path), size=(40, 40), open_surface=policy)  # type: ignore[arg-type]
-    data = renderer.data(scene.replace({"camera.azimuth": azimuth}), (layer, "front", "surface"))
-    covered = data["front"] > 0
-    assert covered.any()
-    np.testing.assert_array_equal(data[layer], np.where(covered, expected, 0))
-    assert (data["surface"][covered][:, 2] > 0.9).all()  # its back shows with the normal towards the viewer
-
-
-def test_a_closed_surface_has_no_open_pixels(renderer: Renderer) -> None:
-    """Where it is thinner than the peel can part, "thick" must not put dark specks on the outline."""
-    scene = dark(object="sphere:60000", size=(200, 200))
-    thin, thick = (renderer.data(scene.replace({"open_surface": p}), ("thickness",)) for p in ("thin", "thick"))
-    np.testing.assert_array_equal(thin["thickness"], thick["thickness"])
-
-
-def test_blur_softens_the_second_layer_and_nothing_else(renderer: Renderer) -> None:
-    """The edges of a box's far side are hard in the exact layer; the outline is left out, where taps are dropped."""
-    scene = dark(object="box:4000", size=(256, 256), camera__azimuth=30.0, camera__elevation=25.0)
-    data = renderer.data(scene, ("thickness", "blurred_thickness", "front"))
-    exact, soft = data["thickness"], data["blurred_thickness"]
-    covered = data["front"] > 0
-    assert ((soft > 0) <= covered).all()
-    inside = binary_erosion(covered, iterations=8)
-    far_side = [data["front"] + 2 * layer for layer in (exact, soft)]
-    bend = [np.abs(np.diff(layer, 2, axis=1))[inside[:, 1:-1]].max() for layer in far_side]
-    assert bend[1] < 0.5 * bend[0]
-    assert np.abs(exact - soft)[inside].max() < 0.01
-
-
 def test_background_shows_where_nothing_covers(renderer: Renderer) -> None:
     scene = Scene(object="torus:8000", size=(64, 64), background=(0.2, 0.4, 0.6))
     image = renderer.render(scene).image
@@ -259,10 +184,11 @@ def test_background_shows_where_nothing_covers(renderer: Renderer) -> None:
 
 
 def test_top_row_comes_first(renderer: Renderer) -> None:
+    """Light from above: the upper half of the sphere is lit, the lower is not."""
     scene = dark(light__diffuse=(1, 1, 1), light__azimuth=0.0, light__elevation=90.0, camera__elevation=0.0)
-    image = renderer.render(scene).image
-    assert image[:48].sum() > 10 * image[48:].sum() - image[..., 3].sum() * 5
-    assert image[24, 48, 0] > image[72, 48, 0]
+    light = renderer.render(scene).image[..., :3]
+    assert light[:48].sum() > 10 * light[48:].sum()
+    assert light[24, 48, 0] > 0.01 and light[72, 48, 0] == 0
 
 
 def test_as_published_is_shown_without_encoding(renderer: Renderer) -> None:
@@ -273,23 +199,6 @@ def test_as_published_is_shown_without_encoding(renderer: Renderer) -> None:
     np.testing.assert_allclose(image[covered][:, :3], decode_srgb(raw)[covered], rtol=1e-4, atol=1e-6)
     assert np.abs(to_8bit(image[..., :3]).astype(int) - np.floor(raw * 255 + 0.5))[covered].max() <= 1
     assert set(np.unique(image[..., 3])) == {0.0, 1.0}
-
-
-@pytest.mark.parametrize("target", ["thickness", "front", "second", "blurred_thickness"])
-def test_layers_are_values_for_every_pixel(renderer: Renderer, target: str) -> None:
-    layer = render(Scene(object="torus:8000", size=(317, 211)), target=target)
-    assert layer.shape == (211, 317) and layer.dtype == np.float32
-    assert np.isfinite(layer).all() and layer[0, 0] == 0 and layer.max() > 0
-
-
-def test_an_unknown_target_is_one_sentence(renderer: Renderer) -> None:
-    with pytest.raises(BadInput, match=r'render: target "thicknes" is written by no pass; there are mesh, occlusion'):
-        render(Scene(object="sphere:4000"), target="thicknes")
-
-
-def test_a_picture_too_large_for_opengl_is_one_sentence(renderer: Renderer) -> None:
-    with pytest.raises(BadInput, match=r"scene: size 16384x1 with supersampling 8 needs 131072 samples in a row"):
-        renderer.render(Scene(object="sphere:4000", size=(16384, 1), supersampling=8))
 
 
 def test_a_sweep_uploads_and_bakes_once(renderer: Renderer) -> None:
@@ -311,36 +220,3 @@ def test_a_turning_camera_rewrites_its_buffers(renderer: Renderer) -> None:
         assert not np.array_equal(renderer.render(scene.replace({"camera.azimuth": degrees})).image, first)
     assert dict(renderer.gpu.uploads.values) == held
     np.testing.assert_array_equal(renderer.render(scene).image, first)
-
-
-def test_warnings_tell_what_clips_and_what_is_missing(renderer: Renderer) -> None:
-    scene = Scene(object="torus:4000", size=(32, 32))
-    (clipped,) = renderer.render(scene.replace({"exposure": 100.0})).warnings
-    assert clipped.endswith("of the object's pixels are brighter than the display's white and clip.")
-    (empty,) = renderer.render(scene.replace({"camera.near": 50.0, "camera.far": 60.0})).warnings
-    assert empty.startswith("No pixel shows the object")
-
-
-def test_repairs_are_among_the_warnings(renderer: Renderer, tmp_path: Path) -> None:
-    drawn = renderer.render(Scene(object=sheet_file(tmp_path), size=(16, 16)))
-    assert any("open" in warning for warning in drawn.warnings)
-
-
-@pytest.mark.parametrize("name", ["picture.png", "picture.exr"])
-def test_render_file_writes_and_tells(renderer: Renderer, tmp_path: Path, name: str) -> None:
-    scene = Scene(object="torus:4000", size=(31, 21))
-    told = render_file(scene, tmp_path / name)
-    assert set(told) == {
-        *("image", "width", "height", "gl_renderer", "passes"),
-        *("non_finite", "warnings", "scene_sha256"),
-    }
-    assert (told["width"], told["height"], told["non_finite"]) == (31, 21, 0)
-    assert all(entry["gpu_ms"] >= 0 for entry in told["passes"])
-    if name.endswith(".png"):
-        assert (tmp_path / name).read_bytes() == encode_png(renderer.render(scene).image)
-        assert read_picture(tmp_path / name)[1] == ()
-
-
-def test_render_file_writes_the_contact_sheet(renderer: Renderer, tmp_path: Path) -> None:
-    told = render_file(Scene(object="torus:4000", size=(31, 21)), tmp_path / "views.png", views=True)
-    assert told["width"] > 1000 and (tmp_path / "views.png").is_file()

@@ -1,0 +1,51 @@
+"""What is said of a picture, and the files that `render_file` writes."""
+
+from pathlib import Path
+
+import pytest
+from picture_scenes import sheet_file
+
+from fakesss.image_io import encode_png, read_picture
+from fakesss.problem import BadInput
+from fakesss.renderer import Renderer, render_file
+from fakesss.scene import Scene
+
+pytestmark = pytest.mark.gl
+
+
+def test_a_picture_too_large_for_opengl_is_one_sentence(renderer: Renderer) -> None:
+    with pytest.raises(BadInput, match=r"scene: size 16384x1 with supersampling 8 needs 131072 samples in a row"):
+        renderer.render(Scene(object="sphere:4000", size=(16384, 1), supersampling=8))
+
+
+def test_warnings_tell_what_clips_and_what_is_missing(renderer: Renderer) -> None:
+    scene = Scene(object="torus:4000", size=(32, 32))
+    (clipped,) = renderer.render(scene.replace({"exposure": 100.0})).warnings
+    assert clipped.endswith("of the object's pixels are brighter than the display's white and clip.")
+    (empty,) = renderer.render(scene.replace({"camera.near": 50.0, "camera.far": 60.0})).warnings
+    assert empty.startswith("No pixel shows the object")
+
+
+def test_repairs_are_among_the_warnings(renderer: Renderer, tmp_path: Path) -> None:
+    drawn = renderer.render(Scene(object=sheet_file(tmp_path), size=(16, 16)))
+    assert any("open" in warning for warning in drawn.warnings)
+
+
+@pytest.mark.parametrize("name", ["picture.png", "picture.exr"])
+def test_render_file_writes_and_tells(renderer: Renderer, tmp_path: Path, name: str) -> None:
+    scene = Scene(object="torus:4000", size=(31, 21))
+    told = render_file(scene, tmp_path / name)
+    assert set(told) == {
+        *("image", "width", "height", "gl_renderer", "passes"),
+        *("non_finite", "warnings", "scene_sha256"),
+    }
+    assert (told["width"], told["height"], told["non_finite"]) == (31, 21, 0)
+    assert all(entry["gpu_ms"] >= 0 for entry in told["passes"])
+    if name.endswith(".png"):
+        assert (tmp_path / name).read_bytes() == encode_png(renderer.render(scene).image)
+        assert read_picture(tmp_path / name)[1] == ()
+
+
+def test_render_file_writes_the_contact_sheet(renderer: Renderer, tmp_path: Path) -> None:
+    told = render_file(Scene(object="torus:4000", size=(31, 21)), tmp_path / "views.png", views=True)
+    assert told["width"] > 1000 and (tmp_path / "views.png").is_file()
