@@ -15,6 +15,7 @@ STATISTICS = {
     "OneWayAnova": "analysis.anova",
     "PairedContrasts": "analysis.contrasts",
     "RepeatedMeasuresAnova": "analysis.anova",
+    "SignedRanks": "analysis.wilcoxon",
     "TukeyHSD": "analysis.tukey",
     "read_ratings": "analysis.ratings",
     "write_report": "analysis.report",

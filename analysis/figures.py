@@ -3,6 +3,7 @@
 import base64
 import io
 import re
+import warnings
 from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
@@ -10,6 +11,7 @@ from typing import Any
 
 import matplotlib as mpl
 import numpy as np
+from matplotlib import font_manager
 from matplotlib.axes import Axes
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
@@ -26,8 +28,13 @@ from analysis.wording import sentence_case
 COLOURS = ("#0072B2", "#009E73", "#D55E00", "#CC79A7", "#56B4E9", "#E69F00")
 INK, FAINT = "#1d1d1f", "#8a8f98"
 THUMBNAIL = 112
+# DejaVu comes with matplotlib; of the others those that are installed fill its gaps (asking for more makes it complain)
+CJK = ("Noto Sans CJK SC", "Noto Sans CJK JP", "Noto Sans SC", "Source Han Sans SC", "WenQuanYi Zen Hei", "PingFang SC",
+       "Hiragino Sans", "Apple SD Gothic Neo", "Microsoft YaHei", "Yu Gothic", "Malgun Gothic", "Unifont")  # fmt: skip
+INSTALLED = {font.name for font in font_manager.fontManager.ttflist}
 STYLE: dict[Any, Any] = {
-    "font.family": "DejaVu Sans",
+    "font.family": ["DejaVu Sans", *(name for name in CJK if name in INSTALLED)],
+    "text.parse_math": False,  # a dollar in a name is a dollar
     "font.size": 9,
     "axes.spines.top": False,
     "axes.spines.right": False,
@@ -45,12 +52,13 @@ NO_DATE = {"Date": None, "Creator": None, "Format": None, "Type": None}
 
 @dataclass(frozen=True)
 class Drawing:
-    """A figure as SVG text and PNG bytes, with its file stem and what it shows in words."""
+    """A figure as SVG text and PNG bytes, with its file stem, what it shows in words, and letters no font here has."""
 
     stem: str
     svg: str
     png: bytes
     caption: str
+    missing: str = ""
 
     @property
     def inline(self) -> str:
@@ -231,6 +239,16 @@ def folded(text: str, width: int = 14) -> str:
 def drawn(figure: Figure, stem: str, caption: str) -> Drawing:
     """The figure in both formats; no dates inside, so equal data give equal bytes."""
     svg, png = io.StringIO(), io.BytesIO()
-    figure.savefig(svg, format="svg", metadata=NO_DATE)
-    FigureCanvasAgg(figure).print_figure(png, format="png", dpi=200, metadata={"Software": None})
-    return Drawing(stem, svg.getvalue(), png.getvalue(), caption)
+    with warnings.catch_warnings(record=True) as caught:
+        warnings.filterwarnings("always", message=r"Glyph \d+")
+        figure.savefig(svg, format="svg", metadata=NO_DATE)
+        FigureCanvasAgg(figure).print_figure(png, format="png", dpi=200, metadata={"Software": None})
+    codes = {int(code) for each in caught for code in re.findall(r"^Glyph (\d+)", str(each.message))}
+    return Drawing(stem, svg.getvalue(), png.getvalue(), caption, "".join(map(chr, sorted(codes))))
+
+
+def letters_missing(drawings: Sequence[Drawing]) -> list[str]:
+    """The sentence on letters that stand as boxes in the figures, if there are any."""
+    letters = "".join(dict.fromkeys("".join(drawing.missing for drawing in drawings)))
+    mend = "install one that does (Noto Sans CJK for Chinese, Japanese and Korean) and report again"
+    return [f"No font on this machine has the letters {letters} of the figures: {mend}."] if letters else []

@@ -21,10 +21,10 @@ from analysis.tables import (
     table_4_4,
     table_4_5,
     table_of_pairs,
-    table_of_ranks,
     table_of_raters,
     table_of_retests,
     table_of_tests,
+    tables_of_ranks,
 )
 
 TEMPLATES = Environment(
@@ -57,7 +57,7 @@ def render_page(
         findings=findings(study, main, plan),
         thesis_tables=thesis_tables(main, other, plan),
         tests=table_of_tests(main),
-        ranks=table_of_ranks(main),
+        ranks=tables_of_ranks(main),
         agreement=agreement_of_tests(main, plan.alpha),
         pairs=table_of_pairs(main, plan.confidence),
         raters=table_of_raters(raters),

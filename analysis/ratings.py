@@ -31,6 +31,8 @@ ALIASES = {
     "question": ("question", "scale", "attribute", "dimension"),
     "rating": ("rating", "response", "score", "answer"),
 }
+LABELS = ("participant", "session", "stimulus", "question", "repeat_of")
+GUARD = r"^'(?=[=+\-@\t\r])"  # the export's apostrophe before what a spreadsheet would run as a formula
 DEFAULT_SCALE = 7
 MODES = ("live", "simulated", "pilot")
 
@@ -53,6 +55,8 @@ def read_ratings(
     frame = frame.rename(columns={name: ours for ours, name in chosen.items()})
     if frame.empty:
         raise BadInput(f"{path}: has a header but no ratings; export again after people have answered")
+    for name in (label for label in LABELS if label in frame):
+        frame[name] = unguarded(frame[name])
     refuse_empty_labels(frame, path)
     frame = of_one_mode(frame).copy()
     frame["rating"] = numeric_ratings(frame, scale, path)
@@ -103,10 +107,14 @@ def choose_columns(header: list[str], columns: Mapping[str, str], path: Path) ->
     return chosen
 
 
+def unguarded(column: "pd.Series[str]") -> "pd.Series[str]":
+    """Labels as they were before the export made them safe for spreadsheets."""
+    return column.str.strip().str.replace(GUARD, "", regex=True)
+
+
 def refuse_empty_labels(frame: pd.DataFrame, path: Path) -> None:
     """A rating without a participant, stimulus or question belongs nowhere."""
     for name in REQUIRED[:3]:
-        frame[name] = frame[name].str.strip()
         empty = frame.index[frame[name] == ""]
         if len(empty):
             raise BadInput(f"{path}: line {empty[0] + 2}: {name} is empty; fill it in or delete the line")

@@ -20,6 +20,8 @@ def rater_table(sample: Sample, study: StudyInfo) -> tuple[pd.DataFrame, list[st
     notes: list[str] = []
     for question in study.questions if sample.mode == "repeated" else ():
         mine = sample.ratings[sample.ratings["question"] == question.name]
+        if mine.empty:  # the remarks say so
+            continue
         try:
             icc = IntraclassCorrelation("rating", "stimulus", "participant")(mine)
             alpha = KrippendorffAlpha("rating", "stimulus", "participant")(mine).iloc[0]

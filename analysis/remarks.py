@@ -1,6 +1,7 @@
 """What a reader must know before believing a table: plain sentences."""
 
 from collections.abc import Sequence
+from difflib import get_close_matches
 
 import pandas as pd
 
@@ -17,13 +18,22 @@ NOT_LIVE = {
 
 
 def remarks(
-    study: StudyInfo, plan: AnalysisPlan, sample: Sample, ratings: pd.DataFrame, found: Sequence[Analysed]
+    study: StudyInfo,
+    plan: AnalysisPlan,
+    sample: Sample,
+    ratings: pd.DataFrame,
+    found: Sequence[Analysed],
+    notes: Sequence[str],
 ) -> list[str]:
-    """Warnings in the order of their weight. `found`: the default mode's analyses."""
-    said = [sentence for each in found for sentence in each.trouble]
-    if not_live(ratings):
-        said.insert(0, not_live(ratings))
+    """Warnings in the order of their weight: not people's answers, answers lost, tests without a value, cautions.
+
+    `ratings`: all that were read; `found`: the default mode's analyses; `notes`: what else had to be left out.
+    """
+    said = [not_live(ratings)] if not_live(ratings) else []
+    said += question_remarks(study, sample, ratings)
     said += design_remarks(study, sample, ratings)
+    said += [sentence for each in found for sentence in each.trouble]
+    said += notes
     said += [sentence for each in found for sentence in row_remarks(each)]
     if any(BEST in comparison.stimuli for comparison in plan.comparison):
         said.append('The "best" own picture was picked by the same ratings: the choice flatters its mean.')
@@ -60,6 +70,22 @@ def row_remarks(each: Analysed) -> list[str]:
     return said
 
 
+def question_remarks(study: StudyInfo, sample: Sample, ratings: pd.DataFrame) -> list[str]:
+    """Questions that the study does not ask, and those of it that have no answer."""
+    asked = [q.name for q in study.questions]
+    said = []
+    for name in (str(found) for found in ratings["question"].unique() if found not in asked):
+        meant = get_close_matches(name, asked, n=1, cutoff=0.5)
+        hint = f' (did you mean "{meant[0]}"?)' if meant else ""
+        said.append(f'Rated but not a question of the study: "{name}"{hint}; not analysed.')
+    answered, used = (set(frame["question"]) for frame in (ratings.dropna(subset="rating"), sample.ratings))
+    if never := [name for name in asked if name not in answered]:
+        said.append(f"Never answered: {joined(never)}.")
+    if left_out := [name for name in asked if name in answered - used]:
+        said.append(f"Answered only by people who were left out: {joined(left_out)}.")
+    return said
+
+
 def design_remarks(study: StudyInfo, sample: Sample, ratings: pd.DataFrame) -> list[str]:
     """Pictures that were never rated or are not listed, and answers that are missing."""
     said = []
@@ -77,15 +103,19 @@ def design_remarks(study: StudyInfo, sample: Sample, ratings: pd.DataFrame) -> l
 
 def agreement_of_tests(found: Sequence[Analysed], alpha: float) -> str:
     """One sentence: do ranks say the same as means?"""
-    both = [each for each in found if each.p is not None and each.friedman is not None]
+    both = [each for each in found if each.p is not None and each.rank_p is not None]
     if not both:
         return ""
     apart = [each.row.title for each in both if decides_apart(each, alpha)]
-    tests = f"Means (ANOVA) and ranks (Friedman), at the {alpha:.0%} level,"
-    return f"{tests} disagree about {joined(apart)}." if apart else f"{tests} agree in all {len(both)} rows."
+    tests = f"Means (ANOVA) and ranks (Friedman, of two samples Wilcoxon), at the {alpha:.0%} level,"
+    if apart:
+        return f"{tests} disagree about {joined(apart)}."
+    if len(both) < len(found):
+        return f"{tests} agree in the {counted(len(both), 'row')} that {'has' if len(both) == 1 else 'have'} both."
+    return f"{tests} agree in {'the only row' if len(both) == 1 else f'all {len(both)} rows'}."
 
 
 def decides_apart(each: Analysed, alpha: float) -> bool:
     """Whether one of the two tests is significant and the other is not."""
-    assert each.p is not None and each.friedman is not None
-    return (each.p < alpha) is not bool(each.friedman["p"] < alpha)
+    assert each.p is not None and each.rank_p is not None
+    return (each.p < alpha) is not (each.rank_p < alpha)

@@ -8,7 +8,7 @@ from typing import Any
 
 import pandas as pd
 
-from analysis.figures import Drawing, comparison_figure, factor_figure
+from analysis.figures import Drawing, comparison_figure, factor_figure, letters_missing
 from analysis.page import render_page
 from analysis.plan import AnalysisPlan, Mode
 from analysis.provenance import provenance
@@ -50,13 +50,15 @@ def write_report(
     study = study or from_ratings(frame, f"Ratings in {ratings.name}", scale)
     refuse_strangers(study, frame, ratings)
     plan = plan or study.plan
-    sample = draw_sample(frame, plan, participants)
+    sample = draw_sample(frame[frame["question"].isin([q.name for q in study.questions])], plan, participants)
     rows, notes = rows_of(study, plan, sample.ratings)
     found = analyse_all(rows, sample, plan, progress)
     main = found[: len(rows)]
     raters, more = rater_table(sample, study)
     retests = retest_table(sample.everything, study)
-    said = [*notes, *remarks(study, plan, sample, frame, main), *more]
+    figures = factor_figure(study, main, plan.confidence), comparison_figure(study, main, plan.confidence)
+    drawings = [figure for figure in figures if figure is not None]
+    said = [*remarks(study, plan, sample, frame, main, [*notes, *more]), *letters_missing(drawings)]
     tables = {
         "anova": anova_table(found),
         "tukey": tukey_table(found),
@@ -67,8 +69,6 @@ def write_report(
     }
     origin = provenance(ratings, frame, study, manifest)
     results = results_json(study, plan, sample, tables, said, origin)
-    figures = factor_figure(study, main, plan.confidence), comparison_figure(study, main, plan.confidence)
-    drawings = [figure for figure in figures if figure is not None]
     page = render_page(study, plan, sample, found, raters, retests, said, drawings, origin)
     save(out, page, results, tables, drawings)
     return results

@@ -15,6 +15,7 @@ from analysis.rows import Row
 from analysis.sample import Sample
 from analysis.tukey import TukeyHSD
 from analysis.undefined import Undefined
+from analysis.wilcoxon import SignedRanks
 from analysis.wording import thesis_verdict
 
 METHODS: dict[Mode, str] = {"repeated": "repeated measures", "independent": "independent samples"}
@@ -31,6 +32,7 @@ class Analysed:
     anova: dict[str, Any] | None
     tukey: pd.DataFrame | None
     friedman: dict[str, Any] | None
+    wilcoxon: dict[str, Any] | None
     contrasts: pd.DataFrame | None
     answers: pd.DataFrame
     trouble: tuple[str, ...]
@@ -39,6 +41,12 @@ class Analysed:
     def p(self) -> float | None:
         """The p value that decides: Greenhouse-Geisser corrected within people, plain between them."""
         return None if self.anova is None else float(self.anova["p_gg" if self.mode == "repeated" else "p"])
+
+    @property
+    def rank_p(self) -> float | None:
+        """The p value of the test of ranks, where one was made."""
+        test = self.friedman or self.wilcoxon
+        return None if test is None else float(test["p"])
 
     @property
     def mse(self) -> float:
@@ -76,15 +84,17 @@ def analyse(row: Row, sample: Sample, plan: AnalysisPlan, mode: Mode) -> Analyse
             trouble.append(f"{row.title} ({METHODS[mode]}): {reason}")
             return None
 
+    friedman = wilcoxon = contrasts = None
     if subject is None:
         anova = attempt(OneWayAnova("rating", "condition"))
-        friedman = contrasts = None
     else:
         anova = attempt(RepeatedMeasuresAnova("rating", "condition", subject))
-        friedman = attempt(Friedman("rating", "condition", subject)) if anova is not None else None
-        contrasts = (
-            attempt(PairedContrasts("rating", "condition", subject, plan.confidence)) if anova is not None else None
-        )
+    if subject is not None and anova is not None:
+        if anova["k"].iloc[0] > 2:
+            friedman = attempt(Friedman("rating", "condition", subject))
+        else:
+            wilcoxon = attempt(SignedRanks("rating", "condition", subject))
+        contrasts = attempt(PairedContrasts("rating", "condition", subject, plan.confidence))
     tukey = attempt(TukeyHSD("rating", "condition", subject, plan.confidence)) if anova is not None else None
     means = MeanIntervals("rating", "condition", subject if anova is not None else None, plan.confidence)(cells)
     return Analysed(
@@ -95,6 +105,7 @@ def analyse(row: Row, sample: Sample, plan: AnalysisPlan, mode: Mode) -> Analyse
         first_row(anova),
         tukey,
         first_row(friedman),
+        first_row(wilcoxon),
         contrasts,
         cells,
         tuple(trouble),

@@ -7,7 +7,7 @@ import pandas as pd
 
 from analysis.labels import natural_order
 from analysis.plan import AnalysisPlan, Exclusions, Mode
-from analysis.ratings import is_check, is_first_showing, of_one_mode
+from analysis.ratings import is_check, is_first_showing, of_one_mode, unguarded
 from analysis.sessions import one_session_each
 from fakesss.problem import BadInput
 
@@ -110,7 +110,7 @@ def read_participants(path: Path) -> tuple[list[str], set[str] | None, set[str]]
         raise BadInput(f"{path}: cannot be read ({error}); it must be a CSV file in UTF-8") from None
     if "participant" not in frame:
         raise BadInput(f'{path}: no column "participant"; export the participants again')
-    frame = of_one_mode(frame)
+    frame = of_one_mode(frame.assign(participant=unguarded(frame["participant"])))
     column = next((name for name in FINISHED_COLUMNS if name in frame), None)
     if column is None:
         return list(frame["participant"]), None, set()

@@ -120,8 +120,32 @@ def test_cells(each: Analysed, adjusted: float) -> tuple[str, ...]:
     return (each.row.title, f"{each.anova['F']:.2f}", df, *epsilons, *tail)
 
 
-def table_of_ranks(found: Sequence[Analysed]) -> Table | None:
-    """Friedman's test beside the analysis of means; None where nobody rated repeatedly."""
+def tables_of_ranks(found: Sequence[Analysed]) -> list[Table]:
+    """Friedman's test beside the analysis of means, Wilcoxon's where there are two samples; none between people."""
+    return [table for table in (table_of_friedman(found), table_of_wilcoxon(found)) if table is not None]
+
+
+def table_of_wilcoxon(found: Sequence[Analysed]) -> Table | None:
+    """Rows of two samples; None where there are none."""
+    rows = tuple(
+        (
+            each.row.title,
+            f"{each.wilcoxon['t']:g}",
+            f"{each.wilcoxon['n_unequal']:.0f} of {each.wilcoxon['n']:.0f}",
+            thesis_p(each.wilcoxon["p"]),
+            no_zero(each.wilcoxon["r"], 3),
+        )
+        for each in found
+        if each.wilcoxon is not None
+    )
+    head = ("Configuration", "T", "n unequal", "p", "r")
+    note = "T: the smaller sum of ranks. r: rank-biserial correlation, above 0 where the first sample is rated higher."
+    caption = "Wilcoxon’s signed-rank test: ranks of two samples instead of means"
+    return Table("table-wilcoxon", caption, head, rows, note=note) if rows else None
+
+
+def table_of_friedman(found: Sequence[Analysed]) -> Table | None:
+    """Rows of three and more samples; None where there are none."""
     rows = tuple(
         (
             each.row.title,

@@ -8,7 +8,7 @@ import pandas as pd
 import pytest
 from scipy import stats
 
-from analysis import Friedman, MeanIntervals, PairedContrasts
+from analysis import Friedman, MeanIntervals, PairedContrasts, SignedRanks
 from analysis.effect_size import eta_squared_interval
 
 DATA = Path(__file__).parents[1] / "data" / "statistics"
@@ -23,6 +23,35 @@ def test_friedman_rounding_times() -> None:
     assert row["chi2"] == pytest.approx(11.14286, abs=5e-6)
     assert row["p"] == pytest.approx(0.0038050, abs=5e-8)
     assert row["kendalls_w"] == pytest.approx(11.14286 / (22 * 2), rel=1e-5)
+
+
+def signed_ranks(*pairs: tuple[float, float]) -> "pd.Series[float]":
+    """Wilcoxon's test of pairs, one a person."""
+    entries = [
+        (f"p{who}", level, value) for who, pair in enumerate(pairs) for level, value in zip("ab", pair, strict=True)
+    ]
+    frame = pd.DataFrame(entries, columns=["subject", "condition", "value"])
+    return SignedRanks(**COLUMNS)(frame).iloc[0]
+
+
+def test_signed_ranks_by_hand() -> None:
+    """Ranks 1 to 5, of which 1 is negative: T = 1, p = 4/32, r = 13/15; an equal pair changes nothing."""
+    row = signed_ranks((1, 2), (4, 2), (5, 2), (6, 2), (7, 2), (3, 3))
+    assert (row["t"], row["n"], row["n_unequal"]) == (1, 6, 5)
+    assert (row["p"], row["r"]) == pytest.approx((4 / 32, 13 / 15))
+
+
+def test_signed_ranks_of_darwins_maize() -> None:
+    """Fisher's The Design of Experiments, table 3: T = 24, exact p .0413 (R: wilcox.test)."""
+    differences = (49, -67, 8, 16, 6, 23, 28, 41, 14, 29, 56, 24, 75, 60, -48)
+    row = signed_ranks(*((value, 0) for value in differences))
+    assert (row["t"], row["n_unequal"]) == (24, 15)
+    assert row["p"] == pytest.approx(0.04125977, abs=5e-8)
+
+
+def test_means_equal_but_for_the_last_bits_are_equal() -> None:
+    """0.1 + 0.2 and 0.3 share no rank."""
+    assert signed_ranks((0.1 + 0.2, 0.3), (2, 1), (3, 1))["n_unequal"] == 2
 
 
 def test_contrasts_are_paired_t_tests_with_holm() -> None:

@@ -8,6 +8,7 @@ import pytest
 
 from analysis import read_ratings
 from fakesss.problem import BadInput
+from study_server.cells import cell
 
 Write = Callable[[str], Path]
 HEAD = "participant,stimulus,question,rating\n"
@@ -95,6 +96,14 @@ def test_latest_revision_and_live_only(csv_of: Write) -> None:
     unmarked = [*rows[:2], "2,p1,a,q,5,live,0,,"]
     with pytest.raises(BadInput, match="say which is a repeat in column repeat_of"):
         read_ratings(csv_of(head + "\n".join(unmarked)))
+
+
+def test_the_apostrophe_of_the_export_is_taken_back(csv_of: Write) -> None:
+    """What the export writes so that no spreadsheet runs it reads as it was; other apostrophes are the name's own."""
+    names = ["=1+1", "+glow", "-5 %", "@noon", "'s Gravenhage", "don't"]
+    frame = read_ratings(csv_of(HEAD + "".join(f"{cell(n)},{cell(n)},{cell(n)},4\n" for n in names)))
+    for column in ("participant", "stimulus", "question"):
+        assert sorted(frame[column]) == sorted(names)
 
 
 def test_empty_rating_is_missing(csv_of: Write) -> None:

@@ -3,12 +3,13 @@
 import pandas as pd
 import pytest
 
-from analysis import Friedman, OneWayAnova, RepeatedMeasuresAnova, TukeyHSD
+from analysis import Friedman, OneWayAnova, RepeatedMeasuresAnova, SignedRanks, TukeyHSD
 from fakesss.problem import BadInput
 
 ONE_WAY = OneWayAnova(value="rating", group="condition")
 REPEATED = RepeatedMeasuresAnova(value="rating", within="condition", subject="participant")
 FRIEDMAN = Friedman(value="rating", within="condition", subject="participant")
+SIGNED_RANKS = SignedRanks(value="rating", within="condition", subject="participant")
 TUKEY = TukeyHSD(value="rating", group="condition")
 
 
@@ -38,6 +39,8 @@ def long(*rows: str) -> pd.DataFrame:
         (ONE_WAY, long("14", "5"), 'level "b" has one rating; each level needs at least two'),
         (FRIEDMAN, long("44", "45"), "Friedman's test needs three levels and there are 2"),
         (FRIEDMAN, long("444", "555"), "everyone rated all levels the same, so there are no ranks"),
+        (SIGNED_RANKS, long("123", "321"), "Wilcoxon's test needs two levels and there are 3"),
+        (SIGNED_RANKS, long("44", "55"), "everyone rated both levels the same, so there are no ranks"),
         (REPEATED, pd.concat([long("147", "235")] * 2), 'participant "p1" has two values at condition "a"'),
         (
             ONE_WAY,
