@@ -57,7 +57,29 @@ def test_the_report_recovers_the_planted_effects(results: dict[str, Any]) -> Non
     assert p["translucent", "thickness exponent"] < 0.001
     assert p["translucent", "backlight"] < 0.01
     assert p["translucent", "diffuse weight"] < 0.01
-    assert p["varnished", "diffuse weight"] > 0.01  # nothing was planted there
+    for factor in ("thickness exponent", "backlight", "diffuse weight"):
+        assert p["varnished", factor] > 0.01  # nothing was planted there
+
+
+def test_the_planted_effects_have_their_direction(results: dict[str, Any]) -> None:
+    """Means by level, as planted: a slope of the other sign, or a level raised instead of lowered, is another study."""
+    exponent = means(results, "translucent", "thickness exponent")
+    assert exponent[18] < exponent[25] < exponent[30]
+    backlight = means(results, "translucent", "backlight")
+    assert backlight[0.8] > backlight[1.2] > backlight[1.6]
+    diffuse = means(results, "translucent", "diffuse weight")
+    assert diffuse[0] < diffuse[0.5]
+    realistic = means(results, "realistic", "thickness exponent")
+    assert realistic[18] > realistic[30]
+
+
+def means(results: dict[str, Any], question: str, factor: str) -> dict[float, float]:
+    """Level -> mean rating."""
+    return {
+        float(row["label"]): row["mean"]
+        for row in results["means"]
+        if (row["question"], row["factor"]) == (question, factor) and row["method"].startswith("repeated")
+    }
 
 
 def test_simulated_answers_are_said_to_be_simulated(study: Path, results: dict[str, Any]) -> None:
