@@ -130,6 +130,7 @@ def table_of_wilcoxon(found: Sequence[Analysed]) -> Table | None:
     rows = tuple(
         (
             each.row.title,
+            pair_name(each),
             f"{each.wilcoxon['t']:g}",
             f"{each.wilcoxon['n_unequal']:.0f} of {each.wilcoxon['n']:.0f}",
             thesis_p(each.wilcoxon["p"]),
@@ -138,10 +139,17 @@ def table_of_wilcoxon(found: Sequence[Analysed]) -> Table | None:
         for each in found
         if each.wilcoxon is not None
     )
-    head = ("Configuration", "T", "n unequal", "p", "r")
-    note = "T: the smaller sum of ranks. r: rank-biserial correlation, above 0 where the first sample is rated higher."
+    head = ("Configuration", "Pair", "T", "n unequal", "p", "r")
+    note = "T: the smaller sum of ranks. r: rank-biserial correlation, above 0 where the first is rated higher."
     caption = "Wilcoxon’s signed-rank test: ranks of two samples instead of means"
-    return Table("table-wilcoxon", caption, head, rows, note=note) if rows else None
+    return Table("table-wilcoxon", caption, head, rows, text_columns=2, note=note) if rows else None
+
+
+def pair_name(each: Analysed) -> str:
+    """The two samples that were rated, of which the second is subtracted."""
+    assert each.means is not None
+    rated = set(each.means["level"])
+    return " minus ".join(level.label for level in each.row.levels if level.code in rated)
 
 
 def table_of_friedman(found: Sequence[Analysed]) -> Table | None:

@@ -25,13 +25,13 @@ def test_friedman_rounding_times() -> None:
     assert row["kendalls_w"] == pytest.approx(11.14286 / (22 * 2), rel=1e-5)
 
 
-def signed_ranks(*pairs: tuple[float, float]) -> "pd.Series[float]":
+def signed_ranks(*pairs: tuple[float, float]) -> dict[str, float]:
     """Wilcoxon's test of pairs, one a person."""
     entries = [
         (f"p{who}", level, value) for who, pair in enumerate(pairs) for level, value in zip("ab", pair, strict=True)
     ]
     frame = pd.DataFrame(entries, columns=["subject", "condition", "value"])
-    return SignedRanks(**COLUMNS)(frame).iloc[0]
+    return dict(SignedRanks(**COLUMNS)(frame).iloc[0])
 
 
 def test_signed_ranks_by_hand() -> None:

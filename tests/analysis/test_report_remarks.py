@@ -12,7 +12,7 @@ from thesis_study import stimulus, write_manifest
 from analysis import write_report
 
 Write = Callable[[str], Path]
-LEVELS = {"thickness exponent": [25, 18], "backlight": [1.2, 0.8, 1.6]}
+LEVELS: dict[str, list[float]] = {"thickness exponent": [25, 18], "backlight": [1.2, 0.8, 1.6]}
 
 
 def small_study(folder: Path, labels: str = "") -> Path:
@@ -26,7 +26,7 @@ def small_study(folder: Path, labels: str = "") -> Path:
 
 
 def answers(people: int = 12, questions: tuple[str, ...] = ("translucent", "realistic", "varnished")) -> str:
-    """Complete ratings of the five pictures; thicker looks more translucent to all but the first."""
+    """Complete ratings of the five pictures."""
     rows = [
         f"p{who},img0{place},{question},{1 + (who * place + who + 3 * (place == 1 and who > 0)) % 7}\n"
         for who in range(people)
@@ -74,7 +74,7 @@ def test_two_levels_get_wilcoxons_test(csv_of: Write, tmp_path: Path) -> None:
     text = page_text(tmp_path / "out")
     assert "Friedman's test: ranks instead of means" in text.replace("&#39;", "'")
     assert "Wilcoxon’s signed-rank test: ranks of two samples instead of means" in text
-    assert re.search(r"agree in all 6 rows|disagree about", text)
+    assert "25 minus 18" in text and "agree in all 6 rows" in text
 
 
 def test_agreement_counts_only_rows_that_have_both(csv_of: Write, tmp_path: Path) -> None:
