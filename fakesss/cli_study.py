@@ -199,7 +199,10 @@ def report(study: Path, out: Path | None, ratings: Path | None, database: str | 
     Example: fakesss report my-study
     """
     from study_server.export import mode_to_analyse
+    from study_server.manifest import load_study, study_changed
 
+    if study_changed(load_study(study)):
+        say(f"{study / 'study.toml'}: has changed since the pictures were built; the report is on the study as built")
     out = out or study / "report"
     if ratings is None:
         results = report_study(study, out, database, mode_to_analyse(study, database))

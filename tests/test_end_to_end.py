@@ -2,6 +2,7 @@
 
 import json
 import os
+import shutil
 import subprocess
 import sys
 from pathlib import Path
@@ -80,6 +81,16 @@ def means(results: dict[str, Any], question: str, factor: str) -> dict[float, fl
         for row in results["means"]
         if (row["question"], row["factor"]) == (question, factor) and row["method"].startswith("repeated")
     }
+
+
+def test_a_study_edited_after_the_build_is_told_to_be_so(study: Path, results: dict[str, Any], tmp_path: Path) -> None:
+    edited = shutil.copytree(study, tmp_path / "edited")
+    with (edited / "study.toml").open("a", encoding="utf-8") as file:
+        file.write("# an afterthought\n")
+    command = [sys.executable, "-m", "fakesss", "report", str(edited)]
+    result = subprocess.run(command, capture_output=True, text=True, timeout=120)
+    assert result.returncode == 0
+    assert "has changed since the pictures were built" in result.stderr
 
 
 def test_simulated_answers_are_said_to_be_simulated(study: Path, results: dict[str, Any]) -> None:
