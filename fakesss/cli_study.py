@@ -194,7 +194,7 @@ def export(study: Path, out: Path | None, database: str | None, mode: Mode, as_j
 def report(study: Path, out: Path | None, ratings: Path | None, database: str | None, as_json: bool) -> None:
     """Analyse the ratings of STUDY: report/index.html, tables, figures, results.json.
 
-    Live ratings where there are any, otherwise simulated ones, and then every page says so.
+    Live ratings where there are any, otherwise simulated ones, otherwise a pilot's; the report says which.
 
     Example: fakesss report my-study
     """
