@@ -105,7 +105,7 @@ def not_understood(request: Request, error: Exception) -> Response:
     """A body or an address that is not of the expected form."""
     assert isinstance(error, RequestValidationError)
     first = error.errors()[0]
-    where = ".".join(str(part) for part in first["loc"]).encode(errors="replace").decode()  # a key may be half a letter
+    where = ".".join(str(part) for part in first["loc"])
     return sorry(request, 422, f"{where}: {first['msg']}.")
 
 
