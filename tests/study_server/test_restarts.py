@@ -1,5 +1,6 @@
 """Starting, stopping, killing: nobody is lost, and what cannot be served says so in one sentence."""
 
+import contextlib
 import signal
 import socket
 import subprocess
@@ -28,11 +29,9 @@ def started_process(study: Path, port: int) -> "subprocess.Popen[bytes]":
     program = f"{PROGRAM} serve(Path(sys.argv[1]), port=int(sys.argv[2]))"
     process = subprocess.Popen([sys.executable, "-c", program, str(study), str(port)], stderr=subprocess.DEVNULL)
     for _ in range(400):
-        try:
+        with contextlib.suppress(httpx.TransportError):  # not listening yet
             if httpx.get(f"http://127.0.0.1:{port}/health").status_code == 200:
                 return process
-        except httpx.TransportError:
-            pass
         time.sleep(0.05)
     process.kill()
     raise AssertionError("the server did not start")
