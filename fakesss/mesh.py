@@ -96,11 +96,12 @@ def read_by_library(content: bytes, kind: str) -> tuple[Floats, NDArray[np.int64
     parts: list[Any] = [part for part in scene.dump() if isinstance(part, trimesh.Trimesh) and len(part.faces)]
     if kind == "ply" and parts and (cut := polygons.cut_ply(parts[0].metadata["_ply_raw"])):
         return cut
+    if not parts:
+        return np.zeros((0, 3)), np.zeros((0, 3), np.int64)
     offsets = np.cumsum([0] + [len(part.vertices) for part in parts[:-1]])
     positions = [np.asarray(part.vertices, np.float64) for part in parts]
     faces = [np.asarray(part.faces, np.int64) + start for part, start in zip(parts, offsets, strict=True)]
-    none = np.zeros((0, 3))
-    return np.concatenate([none, *positions]), np.concatenate([none.astype(np.int64), *faces])
+    return np.concatenate(positions), np.concatenate(faces)
 
 
 def mesh_from_triangles(positions: Floats, faces: NDArray[np.integer[Any]], source: str) -> Mesh:

@@ -38,10 +38,10 @@ class Effects(Strict):
 THESIS = Effects(
     question={
         "translucent": QuestionEffects(
-            slopes={"material.thickness_exponent": 0.75, "material.backlight": -0.45},
-            levels={"material.diffuse_weight": {"0": -1.0}},
+            slopes={"material.thickness_exponent": 0.75, "material.backlight": -0.6},
+            levels={"material.diffuse_weight": {"0": -1.2}},
         ),
-        "realistic": QuestionEffects(slopes={"material.thickness_exponent": -0.25}),
+        "realistic": QuestionEffects(slopes={"material.thickness_exponent": -0.45}),
     }
 )
 """Directions found by Gascons (2011), section 4.2: a larger exponent looks more translucent and slightly less
@@ -146,20 +146,25 @@ def standardised(level: float, levels: list[float]) -> float:
 
 @dataclass(frozen=True)
 class Rater:
-    """One simulated person. Answers depend on seed, number, place and question alone, not on timing."""
+    """One simulated person. Answers depend on seed, number, picture and question alone.
+
+    Not on the picture's place in the session: who gets which order depends on who comes first, and the same seed must
+    give the same data.
+    """
 
     study: BuiltStudy
     effects: Effects
     seed: int
     number: int
 
-    def rating(self, stimulus: Stimulus, place: int, question: int) -> int:
-        """The answer to the question at index `question` for the picture at `place`: 1 .. scale."""
+    def rating(self, stimulus: Stimulus, question: int) -> int:
+        """The answer to the question at index `question` for a picture: 1 .. scale."""
         asked = self.study.settings.question[question]
         effects = self.effects.question.get(asked.name, QuestionEffects())
         mean = (1 + asked.scale) / 2 if effects.intercept is None else effects.intercept
         person = self.effects.person_sd * self.random(1, question).standard_normal()
-        noise = self.effects.noise_sd * self.random(2, question, place).standard_normal()
+        picture = self.study.stimuli.index(stimulus)
+        noise = self.effects.noise_sd * self.random(2, question, picture).standard_normal()
         answer = round(mean + shift(effects, self.study, stimulus) + person + noise)
         return min(max(answer, 1), asked.scale)
 

@@ -107,7 +107,7 @@ def rate(client: httpx.Client, rater: Rater, state: dict[str, Any], walked: Walk
     stimulus = rater.study.by_hash[state["picture"]["sha256"]]
     times = cumulated(random.lognormal(7.5, 0.4, len(state["questions"])))
     answers = [
-        {"question": question["name"], "rating": rater.rating(stimulus, state["place"], index), "rt_ms": times[index]}
+        {"question": question["name"], "rating": rater.rating(stimulus, index), "rt_ms": times[index]}
         for index, question in enumerate(state["questions"])
     ]
     body = {

@@ -91,7 +91,7 @@ def test_a_mesh_with_nan(tmp_path: Path) -> None:
 def test_an_empty_mesh(tmp_path: Path) -> None:
     path = tmp_path / "empty.obj"
     path.write_text("# nothing\n")
-    expect_sentence(fakesss("render", path), "empty.obj")
+    expect_sentence(fakesss("render", path), "empty.obj: holds no triangles; export the object as a triangle mesh")
 
 
 def test_an_unwritable_folder(tmp_path: Path) -> None:
