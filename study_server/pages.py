@@ -67,6 +67,7 @@ def trial_page(connection: Connection, study: BuiltStudy, session: RowMapping) -
         "practice": due["practice"],
         "trial": due["trial"],
         "trials": study.settings.survey.practice if due["practice"] else len(study.stimuli),
+        "stimulus": due["stimulus"],  # simulated raters answer by it: two stimuli may be one picture
         "picture": picture_facts(study.by_id[due["stimulus"]]),
         "next_picture": following,
         "questions": [question.model_dump(mode="json") for question in study.settings.question],

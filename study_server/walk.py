@@ -104,7 +104,7 @@ def look_at(client: httpx.Client, picture: dict[str, Any], seen: set[str]) -> No
 def rate(client: httpx.Client, rater: Rater, state: dict[str, Any], walked: Walked) -> dict[str, Any]:
     """Send the answers to one picture, sometimes twice, and note what was acknowledged; gives the next state."""
     random = rater.random(4, state["place"])
-    stimulus = rater.study.by_hash[state["picture"]["sha256"]]
+    stimulus = rater.study.by_id[state["stimulus"]]
     times = cumulated(random.lognormal(7.5, 0.4, len(state["questions"])))
     answers = [
         {"question": question["name"], "rating": rater.rating(stimulus, index), "rt_ms": times[index]}

@@ -1,5 +1,6 @@
 """Simulated raters do what they were told: their effects, their number, their leaving."""
 
+import json
 from collections.abc import Callable
 from pathlib import Path
 
@@ -103,6 +104,24 @@ def test_the_same_seed_gives_the_same_answers(built: BuiltStudy) -> None:
 
     assert answers(1, 2) == answers(1, 2)
     assert len({tuple(answers(seed, number)) for seed in (1, 2) for number in range(4)}) == 8
+
+
+def test_one_picture_under_two_names_is_judged_afresh_each_time(study: Path, csv_rows: Exported) -> None:
+    manifest = study / "stimuli" / "manifest.json"
+    data = json.loads(manifest.read_text())
+    data["stimuli"][2] |= {"sha256": data["stimuli"][0]["sha256"], "file": data["stimuli"][0]["file"]}
+    manifest.write_text(json.dumps(data))
+    with served(study, mode="simulated") as url:
+        simulate(url, load_study(study), admin_secret(study), started=12, completed=12, progress=False)
+        rows = csv_rows(study, url, "ratings")
+    names = [stimulus["id"] for stimulus in data["stimuli"]]
+    given = {(row["session"], row["question"], row["stimulus"]): row["rating"] for row in rows}
+    twins = [
+        (rating, given[session, question, names[2]])
+        for (session, question, name), rating in given.items()
+        if name == names[0]
+    ]
+    assert any(first != second for first, second in twins)
 
 
 def test_planted_effects_come_out(built: BuiltStudy) -> None:
