@@ -85,7 +85,7 @@ def level_text(value: Any) -> str:
         return str(value).lower()
     if isinstance(value, list | tuple):
         return "(" + ", ".join(level_text(part) for part in value) + ")"
-    return f"{value:g}" if isinstance(value, float) else str(value)
+    return f"{value:.12g}" if isinstance(value, float) else str(value)
 
 
 def declared(study: StudyInfo, plan: AnalysisPlan, questions: list[str], rated: set[str]) -> Iterator[Comparison]:

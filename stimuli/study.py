@@ -10,8 +10,8 @@ from typing import Annotated, Any, Literal, Self
 
 from pydantic import Field, field_validator, model_validator
 
-from fakesss.problem import BadInput, Strict, nearest, validated
-from fakesss.scene import Scene, read_toml, scene_paths
+from fakesss.problem import BadInput, Strict, validated
+from fakesss.scene import Scene, check_path, read_toml
 
 Level = str | bool | int | float | tuple[float | int, ...]
 PLAIN = (str, bool, int, float)
@@ -114,9 +114,7 @@ def study_sha256(folder: Path) -> str:
 def check_factor(factor: Factor, base: Scene, source: str) -> None:
     """Every level of `factor` gives a valid scene, or `BadInput` naming factor, level and mend."""
     where = f'{source}: factor "{factor.name}"'
-    paths = list(scene_paths())
-    if factor.path not in paths:
-        raise BadInput(f'{where}: path "{factor.path}" is no scene field; {nearest(factor.path, paths)}')
+    check_path(factor.path, where)
     seen: list[Any] = []
     for level in factor.levels:
         try:
