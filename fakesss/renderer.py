@@ -2,6 +2,7 @@
 
 import threading
 from dataclasses import dataclass
+from functools import cached_property
 from pathlib import Path
 from typing import Any
 
@@ -20,17 +21,28 @@ from fakesss.scene import Scene
 Float32 = NDArray[np.float32]
 BAKES_KEPT = 8  # the last few meshes and their occlusion
 PICTURE = "image"
+CLIPPING_TOLD = 0.0005  # share of the object's pixels: the least that rounds to 0.1 %
 
 
 @dataclass(frozen=True)
 class Rendering:
-    """One picture and what is to be said of it."""
+    """One picture and what is to be said of it. What needs a look at every pixel is found when it is asked for."""
 
     image: Float32  # (H, W, 4), top row first: linear RGB over the background, and coverage
     passes: list[dict[str, Any]]  # {"name", "gpu_ms"} in the order they ran; gpu_ms is None unless timed
-    warnings: tuple[str, ...]  # one sentence each
-    non_finite: int  # pixels with a value that is not finite; always 0, counted rather than believed
+    repairs: tuple[str, ...]  # of the mesh, one sentence each
     baked: dict[str, Made]
+
+    @cached_property
+    def warnings(self) -> tuple[str, ...]:
+        """One sentence each."""
+        return (*self.repairs, *picture_warnings(self.image))
+
+    @cached_property
+    def non_finite(self) -> int:
+        """Pixels with a value that is not finite; always 0, counted rather than believed."""
+        finite = np.isfinite(self.image)
+        return 0 if finite.all() else int((~finite.all(axis=2)).sum())
 
 
 class Renderer:
@@ -46,9 +58,7 @@ class Renderer:
         plan, outcome = self._run(scene, (PICTURE, "mesh"), samples_of(scene), timed)
         image = np.ascontiguousarray(outcome.values[PICTURE][::-1])
         passes = [{"name": name, "gpu_ms": outcome.gpu_ms.get(name)} for name in plan.passes]
-        non_finite = int((~np.isfinite(image).all(axis=2)).sum())
-        warnings = (*outcome.values["mesh"].repairs, *picture_warnings(scene, image))
-        return Rendering(image, passes, warnings, non_finite, dict(outcome.baked))
+        return Rendering(image, passes, tuple(outcome.values["mesh"].repairs), dict(outcome.baked))
 
     def data(self, scene: Scene, targets: tuple[str, ...], samples: int = 1) -> dict[str, Any]:
         """Resources by name, top row first: one sample at each pixel's centre, so data is never averaged.
@@ -83,16 +93,18 @@ def upright(value: Any) -> Any:
     return np.ascontiguousarray(value[::-1]) if isinstance(value, np.ndarray) and value.ndim > 1 else value
 
 
-def picture_warnings(scene: Scene, image: Float32) -> tuple[str, ...]:
+def picture_warnings(image: Float32) -> tuple[str, ...]:
     """What a researcher should know of a picture before showing it."""
-    warnings = []
     covered = image[..., 3] > 0
-    clipped = float((image[covered][:, :3] > 1).any(axis=1).mean()) if covered.any() else 0.0
-    if clipped >= 0.0005:
-        warnings.append(f"{clipped:.1%} of the object's pixels are brighter than the display's white and clip.")
-    if not covered.any():
-        warnings.append("No pixel shows the object; check camera.distance, camera.near and camera.far.")
-    return tuple(warnings)
+    pixels = np.count_nonzero(covered)
+    if not pixels:
+        return ("No pixel shows the object; check camera.distance, camera.near and camera.far.",)
+    # channel by channel: numpy is slow along an axis of three
+    beyond_white = (image[..., 0] > 1) | (image[..., 1] > 1) | (image[..., 2] > 1)
+    clipped = np.count_nonzero(beyond_white & covered) / pixels
+    if clipped < CLIPPING_TOLD:
+        return ()
+    return (f"{clipped:.1%} of the object's pixels are brighter than the display's white and clip.",)
 
 
 _threads = threading.local()
