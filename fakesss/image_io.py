@@ -1,13 +1,13 @@
 """Pictures to and from files: PNG (8-bit sRGB) and EXR (32-bit linear light), chosen by the file's suffix."""
 
-import io
+from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
-from PIL import Image, PngImagePlugin
 
+from fakesss import png
 from fakesss.colour import to_8bit
 from fakesss.picture_reading import read_picture
 from fakesss.problem import BadInput
@@ -15,8 +15,7 @@ from fakesss.problem import BadInput
 __all__ = ["check_output", "encode_png", "encode_png8", "read_picture", "write_image"]
 
 SUFFIXES = (".png", ".exr")
-COMPRESSION = 6  # zlib level, fixed so that equal pictures are equal files
-PERCEPTUAL = b"\0"  # rendering intent in the sRGB chunk
+BLOCK = 1 << 14  # pixels encoded at once: what the encoder makes of them stays in the processor's cache
 
 
 def check_output(path: str | Path) -> Path:
@@ -48,18 +47,24 @@ def reason(error: Exception) -> str:
 
 
 def encode_png(linear: NDArray[Any]) -> bytes:
-    """PNG bytes of linear RGB (H, W, 3 or 4): encoded to sRGB once, composited already, coverage left out."""
-    return encode_png8(to_8bit(linear[..., :3]))
+    """PNG bytes of linear RGB (H, W, 3 or 4): encoded to sRGB once, composited already, coverage left out.
+
+    Beside the file itself it takes a few megabytes, whatever the picture's size.
+    """
+    height, width = linear.shape[:2]
+    return png.encode((width, height), (to_8bit(rows[..., :3]) for rows in blocks(linear)))
 
 
 def encode_png8(pixels: NDArray[np.uint8]) -> bytes:
-    """PNG bytes of 8-bit sRGB (H, W, 3), with an sRGB chunk and no time stamp: equal pixels give equal bytes."""
-    chunks = PngImagePlugin.PngInfo()
-    chunks.add(b"sRGB", PERCEPTUAL)
-    file = io.BytesIO()
-    picture = Image.fromarray(np.ascontiguousarray(pixels))
-    picture.save(file, format="PNG", pnginfo=chunks, compress_level=COMPRESSION)
-    return file.getvalue()
+    """PNG bytes of 8-bit sRGB (H, W, 3)."""
+    height, width = pixels.shape[:2]
+    return png.encode((width, height), blocks(pixels))
+
+
+def blocks(picture: NDArray[Any]) -> Iterator[NDArray[Any]]:
+    """The picture's rows from the top, a few at a time."""
+    rows = max(1, BLOCK // picture.shape[1])
+    return (picture[start : start + rows] for start in range(0, len(picture), rows))
 
 
 def write_exr(path: Path, linear: NDArray[Any]) -> None:
