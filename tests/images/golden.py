@@ -1,12 +1,12 @@
 """The pictures that must not change unnoticed. `python tests/images/golden.py` draws the references again.
 
-On the renderer that drew the references the bytes must be equal; on another one a picture may differ by at most
-2/255 anywhere and 0.1/255 on average.
+On the renderer that drew the references the pixels must be equal, byte for byte; on another one a picture may differ by
+at most 2/255 anywhere and 0.1/255 on average.
 """
 
 import json
 from pathlib import Path
-from typing import Any
+from typing import IO, Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -34,7 +34,7 @@ GOLDEN: dict[str, Scene] = {
 }
 
 
-def pixels(png: Path) -> NDArray[np.int16]:
+def pixels(png: Path | IO[bytes]) -> NDArray[np.int16]:
     return np.asarray(Image.open(png)).astype(np.int16)
 
 
