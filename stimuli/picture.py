@@ -2,18 +2,21 @@
 
 import hashlib
 import json
+import zlib
+from collections.abc import Callable
 from dataclasses import dataclass
-from functools import cache
+from functools import cache, partial
 from importlib.metadata import version
 from pathlib import Path
-from typing import Any
-
-import numpy as np
+from typing import TYPE_CHECKING, Any
 
 import fakesss
 from fakesss.problem import BadInput
 from stimuli.design import Stimulus
 from stimuli.manifest import sha256
+
+if TYPE_CHECKING:
+    from fakesss.renderer import Rendering
 
 # What a picture's bytes come from besides our own source: shapes, repairs, occlusion, drawing, encoding.
 LIBRARIES = ("moderngl", "numpy", "scipy", "trimesh", "embreex", "scikit-image", "fast-simplification", "pillow")
@@ -45,7 +48,8 @@ def software() -> dict[str, str]:
     """Who draws: the manifest's `software` table. Opens the OpenGL context."""
     from fakesss.gpu import renderer_facts
 
-    return {"fakesss": fakesss.__version__, **{name: version(name) for name in LIBRARIES}, **renderer_facts()}
+    libraries = {name: version(name) for name in LIBRARIES} | {"zlib": zlib.ZLIB_RUNTIME_VERSION}
+    return {"fakesss": fakesss.__version__, **libraries, **renderer_facts()}
 
 
 def build_key(stimulus: Stimulus, size: tuple[int, int], folder: Path, made_by: dict[str, str]) -> str:
@@ -64,17 +68,22 @@ def build_key(stimulus: Stimulus, size: tuple[int, int], folder: Path, made_by: 
     return sha256(json.dumps(depends, sort_keys=True).encode())
 
 
-def draw(stimulus: Stimulus, *, size: tuple[int, int], folder: Path) -> Drawn:
-    """The stimulus as PNG bytes at `size` (width, height)."""
+def draw(stimulus: Stimulus, *, size: tuple[int, int], folder: Path) -> Callable[[], Drawn]:
+    """Draws the stimulus now, at `size` (width, height); what is returned makes the PNG of it later, on any thread."""
     if stimulus.scene is None:
-        return read_made_elsewhere(stimulus, size, folder)
-    from fakesss.image_io import encode_png
+        return partial(read_made_elsewhere, stimulus, size, folder)
     from fakesss.renderer import shared_renderer
 
-    drawn = shared_renderer().render(stimulus.scene.relative_to(folder))
-    height, width = drawn.image.shape[:2]
-    passes = tuple(timing["name"] for timing in drawn.passes)
-    return Drawn(encode_png(drawn.image), width, height, passes, tuple(drawn.warnings))
+    return partial(encoded, shared_renderer().render(stimulus.scene.relative_to(folder)))
+
+
+def encoded(rendering: "Rendering") -> Drawn:
+    """The picture as PNG bytes."""
+    from fakesss.image_io import encode_png
+
+    height, width = rendering.image.shape[:2]
+    passes = tuple(timing["name"] for timing in rendering.passes)
+    return Drawn(encode_png(rendering.image), width, height, passes, rendering.warnings)
 
 
 def read_made_elsewhere(stimulus: Stimulus, size: tuple[int, int], folder: Path) -> Drawn:
@@ -90,7 +99,7 @@ def read_made_elsewhere(stimulus: Stimulus, size: tuple[int, int], folder: Path)
             f"study.toml: compare {stimulus.image!r}: is {width}x{height} but the study's pictures are "
             f"{size[0]}x{size[1]}; resize it or set scene.size"
         )
-    return Drawn(encode_png8(np.ascontiguousarray(pixels)), width, height, (), tuple(warnings))
+    return Drawn(encode_png8(pixels), width, height, (), tuple(warnings))
 
 
 def file_sha256(path: Path) -> str:
