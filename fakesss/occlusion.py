@@ -1,31 +1,22 @@
 """Baked ambient occlusion: for each vertex the share of rays over its normal's hemisphere that hit nothing.
 
-Gascons, *Fast simulation of translucent objects* (2011), section 3.1. All vertices ask along one fixed set of
-directions, spread evenly over the sphere, of which about `rays` lie above any vertex. Neighbours thus ask the same
-question: what error is left varies smoothly over the surface. A set turned at random for each vertex has the same
-error, but shows as speckle.
+Gascons, *Fast simulation of translucent objects* (2011), section 3.1.
 """
 
-import os
 import time
-from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
-from typing import Literal
 
 import numpy as np
 from numpy.typing import NDArray
-from tqdm import tqdm
 
 from fakesss import cache
+from fakesss.hemisphere import Sampling, mean_over_hemisphere
 from fakesss.mesh import Mesh
 
-Floats = NDArray[np.float64]
 Floats32 = NDArray[np.float32]
-Sampling = Literal["cosine", "uniform"]
 
-VERSION = 2  # raised whenever the values change, so that cached ones are made again
+VERSION = 3  # raised whenever the values change, so that cached ones are made again
 CLEARANCE = 5e-4  # from the vertex to where its rays start, in sphere radii: clear of the triangles around it
-GROUPS = 32  # of directions; sums are taken in this order, whatever the number of threads
 
 
 @dataclass(frozen=True, eq=False)
@@ -57,15 +48,6 @@ def bake_occlusion(mesh: Mesh, rays: int = 320, sampling: Sampling = "cosine") -
     return Baked(arrays["values"], rays, cast, time.perf_counter() - started, cached)
 
 
-def even_directions(number: int) -> Floats:
-    """Unit vectors (number, 3) spread evenly over the sphere: the Fibonacci lattice (Swinbank and Purser, 2006)."""
-    index = np.arange(number)
-    z = 1 - (2 * index + 1) / number
-    angle = index * np.pi * (3 - np.sqrt(5))
-    across = np.sqrt(1 - z * z)
-    return np.stack([across * np.cos(angle), across * np.sin(angle), z], axis=1)
-
-
 def ray_origins(mesh: Mesh) -> Floats32:
     """Where each vertex's rays start (V, 3): clear of the surface, and drawn from a border or a crease inwards.
 
@@ -91,27 +73,6 @@ def cast_rays(mesh: Mesh, rays: int, sampling: Sampling) -> tuple[Floats32, int]
     from fakesss.ray_casting import Caster  # Embree is needed only where nothing is cached
 
     caster = Caster(mesh)
-    origins = ray_origins(mesh)
-    directions = even_directions(2 * rays).astype(np.float32)
-    bar = tqdm(total=len(directions) * len(origins) // 2, unit="ray", unit_scale=True, desc="occlusion", disable=None)
-
-    def share(group: NDArray[np.float32]) -> tuple[Floats, Floats, int]:
-        free, asked, cast = np.zeros(len(origins)), np.zeros(len(origins)), 0
-        for direction in group:
-            cosine = np.einsum("ij,j->i", mesh.normals, direction)
-            above = np.flatnonzero(cosine > 0)
-            weight = cosine[above] if sampling == "cosine" else np.ones(len(above), np.float32)
-            along = np.tile(direction, (len(above), 1))
-            asked[above] += weight
-            free[above] += weight * ~caster.blocked(origins[above], along)
-            cast += len(above)
-            bar.update(len(above))
-        return free, asked, cast
-
-    with bar, ThreadPoolExecutor(os.cpu_count()) as pool:
-        groups = list(pool.map(share, np.array_split(directions, GROUPS)))
-    free = np.sum([group[0] for group in groups], axis=0)
-    asked = np.sum([group[1] for group in groups], axis=0)
+    mean, cast = mean_over_hemisphere(ray_origins(mesh), mesh.normals, rays, sampling, caster.clear, "occlusion")
     # with very few rays a vertex may have none above it: nothing was seen to block it
-    values = np.divide(free, asked, out=np.ones(len(origins)), where=asked > 0)
-    return values.astype(np.float32), sum(group[2] for group in groups)
+    return np.nan_to_num(mean, nan=1.0).astype(np.float32), cast

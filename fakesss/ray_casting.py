@@ -1,4 +1,11 @@
-"""Rays against a mesh through Embree (Wald et al., *Embree: a kernel framework*, 2014), as its binding takes them."""
+"""Rays against a mesh through Embree (Wald et al., *Embree: a kernel framework*, 2014), as its binding takes them.
+
+Rays are (N, 3) float32 origins and directions; one direction, (1, 3), serves all origins. `reach` (N,) float32 is how
+far each ray looks, in lengths of its direction, infinity included. A ray of negative reach is passed over at next to no
+cost; what is answered for it means nothing.
+"""
+
+import time
 
 import numpy as np
 from embreex.mesh_construction import TriangleMesh
@@ -14,9 +21,10 @@ NOTHING = -1
 
 
 class Caster:
-    """A mesh's bounding-volume hierarchy. Rays are (N, 3) float32 origins and directions; safe to use from threads."""
+    """A mesh's bounding-volume hierarchy; safe to use from threads, which Embree serves side by side."""
 
     def __init__(self, mesh: Mesh) -> None:
+        started = time.perf_counter()
         self._scene = EmbreeScene()
         # Embree reads the arrays where they lie, so they must live as long as the scene
         self._vertices = np.ascontiguousarray(mesh.positions)
@@ -24,14 +32,21 @@ class Caster:
         self._geometry = TriangleMesh(self._scene, self._vertices, self._faces)
         # the first query builds the hierarchy, which two threads must not do at once
         self.first_face(np.zeros((1, 3), np.float32), np.ones((1, 3), np.float32))
+        self.build_seconds = time.perf_counter() - started
 
     def first_face(self, origins: Floats32, directions: Floats32) -> NDArray[np.int32]:
         """The index of the first triangle that each ray hits, or `NOTHING`."""
         found: NDArray[np.int32] = self._scene.run(origins, directions, query="INTERSECT")
         return found
 
-    def blocked(self, origins: Floats32, directions: Floats32) -> NDArray[np.bool_]:
-        """Whether each ray hits anything."""
-        found: NDArray[np.int32] = self._scene.run(origins, directions, query="OCCLUDED")
-        blocked: NDArray[np.bool_] = found != NOTHING
-        return blocked
+    def clear(self, origins: Floats32, directions: Floats32, reach: Floats32) -> NDArray[np.bool_]:
+        """Whether each ray hits nothing within its reach."""
+        found: NDArray[np.int32] = self._scene.run(origins, directions, dists=reach, query="OCCLUDED")
+        clear: NDArray[np.bool_] = found == NOTHING
+        return clear
+
+    def distance(self, origins: Floats32, directions: Floats32, reach: Floats32) -> Floats32:
+        """How far each ray goes before it hits something; its reach where it hits nothing."""
+        # Embree writes the answers over the reaches
+        found: Floats32 = self._scene.run(origins, directions, dists=reach.copy(), query="DISTANCE")
+        return found

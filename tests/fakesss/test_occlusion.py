@@ -5,8 +5,9 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from fakesss.hemisphere import Sampling, even_directions
 from fakesss.mesh import Mesh, mesh_from_surface, mesh_from_triangles
-from fakesss.occlusion import Sampling, bake_occlusion, cast_rays, even_directions
+from fakesss.occlusion import bake_occlusion, cast_rays
 from fakesss.solids import box, grid, sphere, torus
 
 BOTH: tuple[Sampling, ...] = ("cosine", "uniform")
