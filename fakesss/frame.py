@@ -1,7 +1,8 @@
 """Running a compiled frame graph: textures are taken and given back, every pass sees only what it declared."""
 
 import time
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
+from contextlib import contextmanager
 from dataclasses import dataclass, field
 from typing import Any
 
@@ -9,12 +10,13 @@ import moderngl
 import numpy as np
 from numpy.typing import NDArray
 
-from fakesss.frame_graph import Bake, Node, Pass, Plan, TextureSpec
+from fakesss.frame_graph import DEPTH, Bake, Pass, Plan, TextureSpec
 from fakesss.gpu import Gpu
 from fakesss.recent import Recent
-from fakesss.shader_source import ShaderError, declared_defaults, feed
+from fakesss.shader_source import NOTHING, ShaderError, declared_defaults, feed
 
 FULLSCREEN = "fullscreen.vert"
+IN_PLACE = 2  # value of HAS_<INPUT> where the shader computes the input itself
 
 
 @dataclass(frozen=True)
@@ -44,20 +46,35 @@ class Frame:
     inputs: Mapping[str, Any]
     target: Any  # a moderngl.Framebuffer over `node.writes`
 
-    def program(self, vertex: str, fragment: str, uniforms: Mapping[str, Any], defines: Mapping[str, Any]) -> Any:
-        """The program of two files, fed: `HAS_<INPUT>` follows the wiring, textures are bound under their names."""
+    def program(
+        self,
+        vertex: str,
+        fragment: str,
+        uniforms: Mapping[str, Any],
+        defines: Mapping[str, Any],
+        renamed: Mapping[str, str] = NOTHING,
+    ) -> Any:
+        """The program of two files, fed: `HAS_<INPUT>` follows the wiring, textures are bound under their names.
+
+        `renamed` gives inputs that the shader knows by another name.
+        """
         program = self.gpu.programs.get(vertex, fragment, {**self._wiring(fragment), **defines})
         samplers = {}
         for unit, (name, value) in enumerate(self.inputs.items()):
-            if isinstance(value, moderngl.Texture):
+            if isinstance(value, moderngl.Texture) and name != self.node.mask:
                 value.use(unit)
-                samplers[name] = unit
+                samplers[renamed.get(name, name)] = unit
         feed(program, {**uniforms, **samplers})
         return program
 
     def fill(self, fragment: str, uniforms: Mapping[str, Any], **defines: int | float) -> None:
-        """Run a fragment shader once for every pixel of the target."""
-        program = self.program(FULLSCREEN, fragment, uniforms, defines)
+        """Run a fragment shader once for every pixel of the target, or every one that the pass's mask covers."""
+        fed = dict(uniforms)
+        for node in self.node.merged:
+            if node.in_place:
+                more_uniforms, more_defines = node.in_place(self.inputs)
+                fed, defines = fed | more_uniforms, defines | more_defines
+        program = self.program(FULLSCREEN, fragment, fed, defines)
         triangle = self.gpu.context.vertex_array(program, [])
         triangle.render(moderngl.TRIANGLES, vertices=3)
         triangle.release()
@@ -65,6 +82,7 @@ class Frame:
     def _wiring(self, fragment: str) -> dict[str, int]:
         asked = {name for name in declared_defaults(fragment, self.gpu.programs.root) if name.startswith("HAS_")}
         known = {f"HAS_{name.upper()}": int(name in self.node.reads) for name in (*self.node.reads, *self.node.unread)}
+        known |= {f"HAS_{name.upper()}": IN_PLACE for node in self.node.merged for name in node.writes}
         if unknown := asked - known.keys():
             raise ShaderError(f'{fragment}: {", ".join(sorted(unknown))} is no input of pass "{self.node.name}"')
         return {name: known[name] for name in asked}
@@ -96,8 +114,8 @@ class Run:
             for resource in tuple(self.live):
                 self._give_back(resource)
 
-    def _make(self, node: Node) -> None:
-        inputs = {name: self.live[name] for name in node.reads}
+    def _make(self, node: Pass | Bake) -> None:
+        inputs = {name: self.live[self.plan.root(name)] for name in node.reads}
         if isinstance(node, Bake):
             self._bake(node, inputs)
             return
@@ -120,11 +138,29 @@ class Run:
 
     def _draw(self, node: Pass, inputs: Mapping[str, Any]) -> None:
         size = next(iter(node.writes.values())).size
-        textures = [self.live[name] for name in node.writes]
-        target = self.gpu.pool.framebuffer(textures, size, node.depth_test)
-        with self.gpu.context.scope(target, moderngl.DEPTH_TEST if node.depth_test else moderngl.NOTHING):
-            target.clear()
+        colours = [self.live[name] for name, spec in node.writes.items() if spec.components != DEPTH]
+        depth = next((self.live[name] for name, spec in node.writes.items() if spec.components == DEPTH), None)
+        if node.depth_test and depth is None:
+            depth = self.gpu.pool.depth_buffer(size)
+        target = self.gpu.pool.framebuffer(colours, inputs[node.mask] if node.mask else depth)
+        with self._drawing(node, target):
             node.draw(Frame(self.gpu, node, inputs, target))
+
+    @contextmanager
+    def _drawing(self, node: Pass, target: Any) -> Iterator[None]:
+        """The target emptied and bound, with the tests that the pass asks for."""
+        context = self.gpu.context
+        flags = moderngl.DEPTH_TEST if node.depth_test or node.mask else moderngl.NOTHING
+        with context.scope(target, flags | (moderngl.BLEND if node.add else moderngl.NOTHING)):
+            target.depth_mask = not node.mask
+            target.clear(*node.clear)
+            # a mask keeps the full-screen triangle, which lies on the far plane, to where something is nearer
+            context.depth_func = ">" if node.mask else "<"
+            context.blend_func = moderngl.ONE, moderngl.ONE
+            try:
+                yield
+            finally:
+                context.depth_func = "<"
 
     def _give_back(self, resource: str) -> None:
         value = self.live.pop(resource)
@@ -133,9 +169,10 @@ class Run:
 
     def _value(self, name: str) -> Any:
         """A picture as (H, W) or (H, W, components) float32, bottom row first; a baked resource as it is."""
-        if name not in self.lent:
-            return self.live[name]
-        width, height = self.lent[name].size
-        flat: NDArray[np.float32] = np.frombuffer(self.live[name].read(), dtype=np.float32)
-        picture = flat.reshape(height, width, self.lent[name].components)
+        root = self.plan.root(name)
+        if root not in self.lent:
+            return self.live[root]
+        width, height = self.lent[root].size
+        flat: NDArray[np.float32] = np.frombuffer(self.live[root].read(), dtype=np.float32)
+        picture = flat.reshape(height, width, max(self.lent[root].components, 1))
         return picture[..., 0] if picture.shape[2] == 1 else picture

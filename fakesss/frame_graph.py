@@ -14,12 +14,20 @@ class FrameGraphError(ValueError):
     """The graph as declared cannot be run; the message names the pass and the resource."""
 
 
+DEPTH = 0  # components of a depth buffer
+
+
 @dataclass(frozen=True)
 class TextureSpec:
     """A transient float32 texture. Equal specs share memory when their lives do not overlap."""
 
     size: tuple[int, int]  # (width, height), pixels
-    components: int  # 1..4
+    components: int  # 1..4, or DEPTH
+
+    @property
+    def bytes(self) -> int:
+        """Its memory; a depth buffer takes four bytes a pixel."""
+        return self.size[0] * self.size[1] * 4 * max(self.components, 1)
 
 
 @dataclass(frozen=True)
@@ -28,7 +36,11 @@ class Pass:
 
     `unread` tells, for inputs that this pass could read but this scene does not call for, the reason in words;
     `only_for` names the output without which an input is not needed.
-    Textures are cleared to 0 before `draw`; with `depth_test` an emptied depth buffer is attached.
+    Textures are set to `clear` before `draw`. `depth_test` attaches an emptied depth buffer, one of `writes` if that
+    names one. `mask` names a depth buffer among `reads`: only samples that it covers are drawn. `add` sums what is
+    drawn instead of keeping the last.
+    `in_place`: the uniforms and defines of a full-screen pass whose reader can compute its output itself, given the
+    pass's inputs; a reader that can lists the output in `merges`.
     """
 
     name: str
@@ -38,6 +50,30 @@ class Pass:
     unread: Mapping[str, str] = field(default_factory=dict)
     only_for: Mapping[str, str] = field(default_factory=dict)
     depth_test: bool = False
+    mask: str = ""
+    clear: tuple[float, float, float, float] = (0.0, 0.0, 0.0, 0.0)
+    add: bool = False
+    in_place: Callable[[Mapping[str, Any]], tuple[dict[str, Any], dict[str, int]]] | None = None
+    merges: tuple[str, ...] = ()
+    merged: tuple["Pass", ...] = ()  # filled by `compile`
+
+
+@dataclass(frozen=True)
+class Choice:
+    """One of several resources under a name of its own; `unread` says why not the others. Nothing is copied."""
+
+    name: str
+    chosen: str
+    because: str
+    unread: Mapping[str, str]
+
+    @property
+    def reads(self) -> tuple[str, ...]:
+        return (self.chosen,)
+
+    @property
+    def writes(self) -> Mapping[str, None]:
+        return {self.name: None}
 
 
 @dataclass(frozen=True)
@@ -58,7 +94,7 @@ class Bake:
         return {self.name: None}
 
 
-Node = Pass | Bake
+Node = Pass | Bake | Choice
 
 
 @dataclass(frozen=True)
@@ -68,6 +104,7 @@ class Verdict:
     node: Node
     kept: bool
     because: str
+    merged: bool = False  # kept, but computed by its reader
 
 
 @dataclass(frozen=True)
@@ -77,15 +114,24 @@ class Plan:
     verdicts: tuple[Verdict, ...]
     targets: tuple[str, ...]
     dead_after: Mapping[str, tuple[str, ...]]
+    aliases: Mapping[str, str]  # from a choice's name to the resource chosen
 
     @property
-    def kept(self) -> tuple[Node, ...]:
-        return tuple(verdict.node for verdict in self.verdicts if verdict.kept)
+    def kept(self) -> tuple[Pass | Bake, ...]:
+        """The nodes to run, in order."""
+        nodes = (verdict.node for verdict in self.verdicts if verdict.kept and not verdict.merged)
+        return tuple(node for node in nodes if not isinstance(node, Choice))
 
     @property
     def passes(self) -> tuple[str, ...]:
-        """Names of the kept drawing passes, in the order they run."""
-        return tuple(node.name for node in self.kept if isinstance(node, Pass))
+        """Names of the kept drawing passes in the order they run, those that a reader computes among them."""
+        return tuple(v.node.name for v in self.verdicts if v.kept and isinstance(v.node, Pass))
+
+    def root(self, resource: str) -> str:
+        """The resource itself, for a choice's name."""
+        while resource in self.aliases:
+            resource = self.aliases[resource]
+        return resource
 
 
 class FrameGraph:
@@ -118,27 +164,33 @@ class FrameGraph:
         for target in targets:
             if target not in self.writer:
                 raise FrameGraphError(f'target "{target}" is written by no pass; there are {", ".join(self.writer)}')
+        nodes, wanted = self._wanted(set(targets))
+        kept = [node for node in nodes if wanted.intersection(node.writes)]
+        verdicts = [
+            Verdict(node, True, why_kept(node, kept, targets))
+            if node in kept
+            else Verdict(node, False, why_culled(node, nodes, kept))
+            for node in nodes
+        ]
+        aliases = {node.name: node.chosen for node in nodes if isinstance(node, Choice)}
+        plan = Plan(tuple(merged(verdicts, targets)), targets, {}, aliases)
+        last_use = {plan.root(resource): node.name for node in plan.kept for resource in (*node.writes, *node.reads)}
+        alive = {plan.root(target) for target in targets}
+        dead_after = {
+            node.name: tuple(r for r, last in last_use.items() if last == node.name and r not in alive)
+            for node in plan.kept
+        }
+        return replace(plan, dead_after=dead_after)
+
+    def _wanted(self, wanted: set[str]) -> tuple[list[Node], set[str]]:
+        """Every node without the inputs that serve nothing wanted, and all that is wanted for `wanted`."""
         nodes: list[Node] = []
-        wanted = set(targets)
         for declared in reversed(self.nodes):
             node = without_idle_inputs(declared, wanted)
             nodes.insert(0, node)
             if wanted.intersection(node.writes):
-                wanted.update(node.reads)
-        kept = [node for node in nodes if wanted.intersection(node.writes)]
-        last_use = {resource: node.name for node in kept for resource in (*node.writes, *node.reads)}
-        dead_after = {
-            node.name: tuple(r for r, last in last_use.items() if last == node.name and r not in targets)
-            for node in kept
-        }
-        culled = [node for node in nodes if node not in kept]
-        verdicts = [
-            Verdict(node, True, why_kept(node, kept, targets))
-            if node in kept
-            else Verdict(node, False, why_culled(node, kept, culled))
-            for node in nodes
-        ]
-        return Plan(tuple(verdicts), targets, dead_after)
+                wanted = wanted.union(node.reads)
+        return nodes, wanted
 
     def to_dot(self, plan: Plan | None = None) -> str:
         """Graphviz source: passes as boxes, baked inputs as houses, resources as edges; what is culled is dashed."""
@@ -146,7 +198,7 @@ class FrameGraph:
         lines = ["digraph frame {", "  rankdir=LR; node [fontname=Helvetica]; edge [fontname=Helvetica fontsize=10]"]
         for node in self.nodes:
             style = "solid" if node.name in kept else "dashed"
-            shape = "house" if isinstance(node, Bake) else "box"
+            shape = {Bake: "house", Choice: "diamond"}.get(type(node), "box")
             lines.append(f'  "{node.name}" [shape={shape} style={style}]')
             for resource in (*node.reads, *node.unread):
                 alive = "solid" if style == "solid" and resource in node.reads else "dashed"
@@ -157,20 +209,46 @@ class FrameGraph:
 
 def without_idle_inputs(node: Node, wanted: set[str]) -> Node:
     """`node` reading only what serves a wanted output."""
-    if isinstance(node, Bake):
+    if not isinstance(node, Pass):
         return node
     idle = {name: f"{output} is not wanted" for name, output in node.only_for.items() if output not in wanted}
     reads = tuple(name for name in node.reads if name not in idle)
     return replace(node, reads=reads, unread={**idle, **node.unread})
 
 
+def merged(verdicts: list[Verdict], targets: tuple[str, ...]) -> list[Verdict]:
+    """The verdicts with every pass that its only reader can compute in place merged into that reader."""
+    for index, verdict in enumerate(verdicts):
+        node = verdict.node
+        if not verdict.kept or not isinstance(node, Pass) or node.in_place is None:
+            continue
+        places = [
+            place
+            for place, other in enumerate(verdicts)
+            if other.kept and not other.merged and set(other.node.reads).intersection(node.writes)
+        ]
+        reader = verdicts[places[0]].node if len(places) == 1 else None
+        if not isinstance(reader, Pass) or set(targets).intersection(node.writes):
+            continue
+        if not set(node.writes).issubset(reader.merges):
+            continue
+        reads = dict.fromkeys((*(name for name in reader.reads if name not in node.writes), *node.reads))
+        united = replace(reader, reads=tuple(reads), merged=(*reader.merged, node))
+        verdicts[places[0]] = replace(verdicts[places[0]], node=united)
+        verdicts[index] = replace(verdict, merged=True, because=f"computed by {reader.name}, its only reader")
+    return verdicts
+
+
 def why_kept(node: Node, kept: list[Node], targets: tuple[str, ...]) -> str:
-    """Who asks for what the node writes."""
+    """Who asks for what the node writes; of a choice also why it chose so."""
     asked = [f"{resource} is asked for" for resource in node.writes if resource in targets]
-    return "; ".join(asked) or f"read by {in_words(readers_of(node, kept))}"
+    asked = asked or [f"read by {in_words(readers_of(node, kept))}"]
+    if isinstance(node, Choice):
+        asked.append(f"{node.chosen}: {node.because}")
+    return "; ".join(asked)
 
 
-def why_culled(node: Node, kept: list[Node], culled: list[Node]) -> str:
+def why_culled(node: Node, nodes: list[Node], kept: list[Node]) -> str:
     """Which settings keep the others from reading what the node writes."""
     reasons = [
         f"not read by {other.name}: {why}"
@@ -178,7 +256,7 @@ def why_culled(node: Node, kept: list[Node], culled: list[Node]) -> str:
         for resource, why in other.unread.items()
         if resource in node.writes
     ]
-    if readers := readers_of(node, culled):
+    if readers := readers_of(node, [other for other in nodes if other not in kept]):
         reasons.append(f"read only by {in_words(readers)}, which {'are' if len(readers) > 1 else 'is'} culled")
     return "; ".join(dict.fromkeys(reasons)) or "nothing that is asked for reads it"
 

@@ -1,32 +1,57 @@
 """The frame graph of a scene. Every node is always declared; the scene decides only what the consumers read."""
 
+from fakesss.calls import Setting
 from fakesss.camera import View
 from fakesss.frame_graph import FrameGraph
+from fakesss.passes.back_faces import back_faces
 from fakesss.passes.blur import blur
+from fakesss.passes.bridge import bridge
+from fakesss.passes.coarse_mesh import coarse_mesh
 from fakesss.passes.front import front
+from fakesss.passes.local_exit import local_exit
+from fakesss.passes.local_thickness import local_thickness
 from fakesss.passes.mesh import mesh
 from fakesss.passes.occlusion import occlusion
-from fakesss.passes.resolve import resolve
-from fakesss.passes.second import second
+from fakesss.passes.peel import deeper, peel
+from fakesss.passes.resolve import image, resolve
+from fakesss.passes.second import first_exit, second
 from fakesss.passes.shade import shade
 from fakesss.passes.thickness import thickness
+from fakesss.passes.total_path import path_exit, total_path
 from fakesss.scene import Scene
 
+NONE: frozenset[str] = frozenset()
 
-def build(scene: Scene, samples: int = 1) -> FrameGraph:
-    """The graph of `scene` with `samples` x `samples` samples in a pixel of `image`; needs no GPU."""
+
+def build(scene: Scene, samples: int = 1, solid: bool = False, forced: frozenset[str] = NONE) -> FrameGraph:
+    """The graph of `scene` with `samples` x `samples` samples in a pixel of `image`; needs no GPU.
+
+    `solid`: whether the mesh is one (`fakesss.solidity`). `forced`: effects of `calls.EFFECTS` to simulate although
+    their weight is zero.
+    """
     size = (scene.size[0] * samples, scene.size[1] * samples)
-    view = View.of(scene.camera, scene.size)
+    setting = Setting(scene, View.of(scene.camera, scene.size), size, samples, solid, forced)
     return FrameGraph(
         [
             mesh(scene),
             occlusion(scene),
-            front(scene, view, size),
-            second(scene, view, size),
-            thickness(scene, view, size),
-            blur(scene, view, size),
-            shade(scene, view, size),
-            resolve(scene, samples),
+            local_thickness(scene),
+            coarse_mesh(scene),
+            front(setting),
+            back_faces(setting),
+            peel(setting),
+            first_exit(setting),
+            *deeper(setting),
+            bridge(setting),
+            total_path(setting),
+            path_exit(setting),
+            local_exit(setting),
+            second(setting),
+            thickness(setting),
+            blur(setting),
+            shade(setting),
+            resolve(setting),
+            image(setting),
         ]
     )
 

@@ -1,7 +1,7 @@
 """Pictures of scenes. `render(scene)` is the short way; a `Renderer` keeps what the next picture can use again."""
 
 import threading
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 from pathlib import Path
 from typing import Any
@@ -13,10 +13,11 @@ from fakesss import gpu as opengl
 from fakesss.frame import Made, Outcome, Run
 from fakesss.frame_graph import FrameGraphError, Plan
 from fakesss.image_io import check_output, write_image
-from fakesss.pipeline import build, samples_of
+from fakesss.pipeline import NONE, build, samples_of
 from fakesss.problem import BadInput
 from fakesss.recent import Recent
 from fakesss.scene import Scene
+from fakesss.solidity import is_solid
 
 Float32 = NDArray[np.float32]
 BAKES_KEPT = 8  # the last few meshes and their occlusion
@@ -53,9 +54,12 @@ class Renderer:
         self.bakes: Recent[Any] = Recent(BAKES_KEPT)
         self.buffer_size: tuple[int, int] | None = None
 
-    def render(self, scene: Scene, timed: bool = False) -> Rendering:
-        """The picture of `scene`; `timed` adds GPU times of each pass. Raises `BadInput` for what a user can mend."""
-        plan, outcome = self._run(scene, (PICTURE, "mesh"), samples_of(scene), timed)
+    def render(self, scene: Scene, timed: bool = False, forced: frozenset[str] = NONE) -> Rendering:
+        """The picture of `scene`. Raises `BadInput` for what a user can mend.
+
+        `timed` adds GPU times of each pass; `forced` names effects to simulate although their weight is zero.
+        """
+        plan, outcome = self._run(scene, (PICTURE, "mesh"), samples_of(scene), timed, forced)
         image = np.ascontiguousarray(outcome.values[PICTURE][::-1])
         passes = [{"name": name, "gpu_ms": outcome.gpu_ms.get(name)} for name in plan.passes]
         return Rendering(image, passes, tuple(outcome.values["mesh"].repairs), dict(outcome.baked))
@@ -69,11 +73,22 @@ class Renderer:
         outcome = self._run(scene, targets, samples)[1]
         return {name: upright(value) for name, value in outcome.values.items()}
 
-    def _run(self, scene: Scene, targets: tuple[str, ...], samples: int, timed: bool = False) -> tuple[Plan, Outcome]:
+    def _run(
+        self,
+        scene: Scene,
+        targets: tuple[str, ...],
+        samples: int,
+        timed: bool = False,
+        forced: frozenset[str] = NONE,
+    ) -> tuple[Plan, Outcome]:
         self._fit(scene, samples)
-        plan = build(scene, samples).compile(targets)
+        loaded = Run(build(scene).compile(("mesh",)), self.gpu, self.bakes)()
+        mesh = loaded.values["mesh"]
+        solid = self.bakes.get(("solid", mesh.sha256), lambda: is_solid(mesh))
+        plan = build(scene, samples, solid, forced).compile(targets)
         with opengl.reporting_memory(scene.size, samples):
-            return plan, Run(plan, self.gpu, self.bakes, timed)()
+            outcome = Run(plan, self.gpu, self.bakes, timed)()
+        return plan, replace(outcome, baked={**outcome.baked, **loaded.baked})
 
     def _fit(self, scene: Scene, samples: int) -> None:
         size = (scene.size[0] * samples, scene.size[1] * samples)

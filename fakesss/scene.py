@@ -14,15 +14,13 @@ from typing import Annotated, Any, Literal, Self
 
 from pydantic import BaseModel, Field, model_validator
 
+from fakesss.lights import LARGEST, MOST_LIGHTS, Light, NonNegative, Shadow
 from fakesss.problem import BadInput, Strict, nearest, validated
 
 Unit = Annotated[float, Field(ge=0, le=1)]
-LARGEST = 1e6  # of any weight or intensity: products of four stay far within float32
 Weight = Annotated[float, Field(ge=-LARGEST, le=LARGEST)]
-NonNegative = Annotated[float, Field(ge=0, le=LARGEST)]
 Radii = Annotated[float, Field(gt=0, le=1e4)]
 Albedo = tuple[Unit, Unit, Unit]
-Intensity = tuple[NonNegative, NonNegative, NonNegative]
 Pixels = Annotated[int, Field(ge=1, le=16384)]
 
 
@@ -37,19 +35,12 @@ class Material(Strict):
         25.0, description="fall-off of the backlight with thickness [r], no unit"
     )
     backlight: Weight = Field(1.2, description="backlight contribution [wb], no unit")
+    thickness: Literal["first-interval", "total-path", "bridged", "local"] = Field(
+        "first-interval", description="what the backlight passes through (docs/technique.md)"
+    )
     diffuse_weight: Weight = Field(0.2, description="added to every channel of the backlight's colour [Kb]")
     diffuse_contribution: Weight = Field(0.13, description="weight of the diffuse term [wd], no unit")
     specular_contribution: Weight = Field(1.0, description="weight of the specular term [ws], no unit")
-
-
-class Light(Strict):
-    """The movable light. It adds ambient, diffuse and specular terms; the backlight is always behind the object."""
-
-    azimuth: float = Field(-35.0, description="degrees around +y from +z (towards the viewer) to +x (right)")
-    elevation: Annotated[float, Field(ge=-90, le=90)] = Field(50.0, description="degrees above the horizon")
-    ambient: Intensity = Field((0.09, 0.09, 0.095), description="ambient intensity [Ia], linear RGB")
-    diffuse: Intensity = Field((1.0, 1.0, 1.0), description="diffuse intensity [Id], linear RGB")
-    specular: Intensity = Field((1.0, 1.0, 1.0), description="specular intensity [Is], linear RGB")
 
 
 class Camera(Strict):
@@ -78,13 +69,42 @@ class Camera(Strict):
 
 
 class Occlusion(Strict):
-    """Baked per-vertex ambient occlusion [a]: the share of rays over the normal's hemisphere that hit nothing."""
+    """Ambient occlusion [a]: the share of the normal's hemisphere from which nothing keeps the light."""
 
-    enabled: bool = Field(True, description="false: every vertex sees the whole hemisphere (a = 1)")
-    rays: Annotated[int, Field(ge=1, le=65536)] = Field(320, description="rays per vertex")
+    enabled: bool = Field(True, description="false: the whole hemisphere is seen everywhere (a = 1)")
+    method: Literal["baked", "screen-space"] = Field(
+        "baked", description="baked: rays from every vertex; screen-space: samples of the front layer around each pixel"
+    )
+    rays: Annotated[int, Field(ge=1, le=65536)] = Field(320, description="rays per vertex, baked")
     sampling: Literal["cosine", "uniform"] = Field(
         "cosine", description="cosine: irradiance-weighted; uniform: plain share of the hemisphere"
     )
+    samples: Annotated[int, Field(ge=1, le=256)] = Field(64, description="samples per pixel, screen-space")
+    radius: Annotated[float, Field(gt=0, le=1)] = Field(
+        0.15, description="of the hemisphere that is sampled in screen space, in sphere diameters"
+    )
+    bias: Annotated[float, Field(ge=0, le=0.1)] = Field(
+        2e-3, description="depth by which a screen-space sample may lie behind the front layer, in sphere diameters"
+    )
+
+
+class Layers(Strict):
+    """How the second layer is found, and what the thicknesses other than the first interval need."""
+
+    method: Literal["auto", "peel", "back-faces"] = Field(
+        "auto", description="auto: the cheaper exact one for the mesh; peel: any mesh; back-faces: watertight ones"
+    )
+    gap: Annotated[float, Field(gt=0, le=10)] = Field(
+        0.05, description="bridged: width of a gap after which matter counts 1/e, in sphere diameters"
+    )
+    rays: Annotated[int, Field(ge=1, le=65536)] = Field(320, description="local: rays per vertex into the object")
+    reach: Annotated[float, Field(gt=0, le=1)] = Field(
+        0.5, description="local: distance from which on a ray counts no more, in sphere diameters"
+    )
+    faces: Annotated[int, Field(ge=4)] | None = Field(
+        None, description="APPROXIMATE second layer from about so many faces; empty: all of them, exact"
+    )
+    reduction: Literal[1, 2] = Field(1, description="2: APPROXIMATE second layer at half the picture's resolution")
 
 
 class Blur(Strict):
@@ -115,7 +135,10 @@ class Scene(Strict):
     )
     material: Material = Material()
     light: Light = Light()
+    lights: Annotated[tuple[Light, ...], Field(max_length=MOST_LIGHTS - 1)] = Field((), description="further lights")
+    shadow: Shadow = Shadow()
     camera: Camera = Camera()
+    layers: Layers = Layers()
     occlusion: Occlusion = Occlusion()
     blur: Blur = Blur()
 

@@ -10,12 +10,13 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
 from types import MappingProxyType
+from typing import Any
 
 GLSL = Path(__file__).parent / "glsl"
 VERSION = "#version 330 core"
 INCLUDE = re.compile(r'^\s*#\s*include\s+"([^"]+)"\s*(//.*)?$')
 DEFAULT = re.compile(r"^\s*#\s*define\s+([A-Z][A-Z0-9_]*)\s+(\S+)\s*//\s*\S")
-NOTHING: Mapping[str, int | float] = MappingProxyType({})
+NOTHING: Mapping[str, Any] = MappingProxyType({})
 
 
 class ShaderError(ValueError):

@@ -5,7 +5,7 @@ from typing import Any
 
 import moderngl
 
-from fakesss.frame_graph import TextureSpec
+from fakesss.frame_graph import DEPTH, TextureSpec
 
 
 @dataclass
@@ -15,30 +15,38 @@ class TexturePool:
     context: Any
     free: dict[TextureSpec, list[Any]] = field(default_factory=dict)
     depth_buffers: dict[tuple[int, int], Any] = field(default_factory=dict)
-    framebuffers: dict[tuple[int, ...], Any] = field(default_factory=dict)
+    framebuffers: dict[tuple[int | str, ...], Any] = field(default_factory=dict)
 
     def take(self, spec: TextureSpec) -> Any:
         """A texture of this spec with unspecified contents."""
         spare = self.free.get(spec)
-        texture = spare.pop() if spare else self.context.texture(spec.size, spec.components, dtype="f4")
+        texture = spare.pop() if spare else self._made(spec)
         texture.filter = (moderngl.NEAREST, moderngl.NEAREST)
         texture.repeat_x = texture.repeat_y = False
-        texture.swizzle = "RGBA"
+        if spec.components == DEPTH:
+            texture.compare_func = ""  # read as data; a new one compares
+        else:
+            texture.swizzle = "RGBA"
         return texture
+
+    def _made(self, spec: TextureSpec) -> Any:
+        if spec.components == DEPTH:
+            return self.context.depth_texture(spec.size)
+        return self.context.texture(spec.size, spec.components, dtype="f4")
 
     def give_back(self, spec: TextureSpec, texture: Any) -> None:
         """Take back a texture of `take`."""
         self.free.setdefault(spec, []).append(texture)
 
-    def framebuffer(self, textures: list[Any], size: tuple[int, int], depth_test: bool) -> Any:
-        """A framebuffer over `textures`, and a depth buffer of their size if wanted; reused while they live."""
-        key = (*(texture.glo for texture in textures), int(depth_test))
+    def framebuffer(self, colours: list[Any], depth: Any) -> Any:
+        """A framebuffer over textures and a depth buffer or None; reused while they live."""
+        key = (*(texture.glo for texture in colours), type(depth).__name__, getattr(depth, "glo", 0))
         if key not in self.framebuffers:
-            depth = self._depth_buffer(size) if depth_test else None
-            self.framebuffers[key] = self.context.framebuffer(textures, depth)
+            self.framebuffers[key] = self.context.framebuffer(colours, depth)
         return self.framebuffers[key]
 
-    def _depth_buffer(self, size: tuple[int, int]) -> Any:
+    def depth_buffer(self, size: tuple[int, int]) -> Any:
+        """The depth buffer of this size for a pass that keeps it to itself."""
         if size not in self.depth_buffers:
             self.depth_buffers[size] = self.context.depth_renderbuffer(size)
         return self.depth_buffers[size]

@@ -1,61 +1,11 @@
-// Thickness to a second layer that a depth-aware 5x5 Gaussian has softened: thesis section 3.1 and appendix C.2.2.
-#include "common_depth.glsl"
-#include "common_layers.glsl"
-
-#define AS_PUBLISHED 0  // 1: weights from non-linear depths, background recognised by them
-#define PUBLISHED_BACKGROUND 0.99  // thesis appendix C.2.2, in non-linear depth
+#include "common_blur.glsl"
 
 uniform sampler2D front;
-uniform sampler2D second;
-uniform vec2 tap;           // distance between taps, shares of the picture's width and height
-uniform float depth_range;  // difference at which a tap's weight reaches 0; sphere radii, or non-linear as published
-uniform float open_thickness;
-#if AS_PUBLISHED
-uniform vec2 clip;
-uniform float distance;
-#endif
 
 out float blurred_thickness;
 
-// The usual integer table of a Gaussian with standard deviation 1, by distance from the centre; its sum cancels.
-const float KERNEL[9] = float[](41.0, 26.0, 7.0,
-                                26.0, 16.0, 4.0,
-                                 7.0,  4.0, 1.0);
-
-#if AS_PUBLISHED
-float compared(float layer) { return is_empty(layer) ? 1.0 : nonlinear_depth(layer - ORIGIN + distance, clip); }
-bool is_background(float window) { return window > PUBLISHED_BACKGROUND; }
-float to_layer(float window) { return linear_depth(window, clip) - distance + ORIGIN; }
-#else
-float compared(float layer) { return layer; }
-bool is_background(float layer) { return is_empty(layer); }
-float to_layer(float layer) { return layer; }
-#endif
-
-float blurred(float centre) {
-    vec2 here = gl_FragCoord.xy / vec2(textureSize(second, 0));
-    float sum = 0.0, weights = 0.0;
-    for (int y = -2; y <= 2; ++y)
-        for (int x = -2; x <= 2; ++x) {
-            float depth = compared(texture(second, here + tap * vec2(x, y)).r);
-            float gap = clamp(abs(depth - centre) / depth_range, 0.0, 1.0);
-            float weight = is_background(depth) ? 0.0 : KERNEL[3 * abs(y) + abs(x)] * (1.0 - gap);  // eq. C.1
-            sum += weight * (depth - centre);  // of differences: their rounding is far below that of depths
-            weights += weight;
-        }
-    return to_layer(weights > 0.0 ? centre + sum / weights : centre);
-}
-
 void main() {
     ivec2 here = ivec2(gl_FragCoord.xy);
-    float z1 = texelFetch(front, here, 0).r;
-    if (is_empty(z1)) discard;
-    float z2 = texelFetch(second, here, 0).r;
-#if !AS_PUBLISHED
-    if (is_empty(z2)) {
-        blurred_thickness = open_thickness;
-        return;
-    }
-#endif
-    blurred_thickness = relative_thickness(z1, blurred(compared(z2)), open_thickness);
+    vec2 place = gl_FragCoord.xy / vec2(textureSize(front, 0));
+    blurred_thickness = blurred_thickness_behind(texelFetch(front, here, 0).r, here, place);
 }

@@ -1,11 +1,10 @@
-// Box filter over n x n samples in linear light, composited over the background; alpha is the share covered.
+// Box filter over n x n samples in linear light; alpha is the share covered.
 #include "common_colour.glsl"
 
 #define SAMPLES 1  // n
 #define AS_PUBLISHED 0  // 1: radiance was written to the screen without encoding; image is the light such a screen shows
 
 uniform sampler2D shaded;
-uniform vec3 background;
 
 out vec4 image;
 
@@ -13,11 +12,12 @@ void main() {
     ivec2 corner = ivec2(gl_FragCoord.xy) * SAMPLES;
     vec4 sum = vec4(0.0);
     for (int y = 0; y < SAMPLES; ++y)
-        for (int x = 0; x < SAMPLES; ++x)
-            sum += texelFetch(shaded, corner + ivec2(x, y), 0);
-    vec4 mean = sum / float(SAMPLES * SAMPLES);
+        for (int x = 0; x < SAMPLES; ++x) {
+            vec4 taken = texelFetch(shaded, corner + ivec2(x, y), 0);
 #if AS_PUBLISHED
-    mean.rgb = decode_srgb(clamp(mean.rgb, 0.0, 1.0));
+            if (taken.a > 0.0) taken.rgb = decode_srgb(clamp(taken.rgb, 0.0, 1.0));
 #endif
-    image = vec4(mean.rgb + (1.0 - mean.a) * background, mean.a);
+            sum += taken;
+        }
+    image = sum / float(SAMPLES * SAMPLES);
 }

@@ -2,20 +2,23 @@
 
 import numpy as np
 
-from fakesss.camera import View
+from fakesss.calls import Setting
 from fakesss.frame import Frame
-from fakesss.frame_graph import Pass, TextureSpec
+from fakesss.frame_graph import DEPTH, Pass, TextureSpec
 from fakesss.passes.geometry import Attribute, draw_mesh, normals, upload
 from fakesss.scene import Scene
 
 
-def front(scene: Scene, view: View, size: tuple[int, int]) -> Pass:
-    """Writes `front` (depth, see common_layers.glsl) and `surface` (unit normal in the eye frame, occlusion)."""
-    lacking = no_occlusion_because(scene)
+def front(setting: Setting) -> Pass:
+    """Writes `front` (depth, see common_layers.glsl), `surface` (unit normal in the eye frame, baked occlusion) and
+    `coverage`, the depth buffer that keeps full-screen passes to the object."""
+    lacking = no_bake_because(setting)
+    view, size = setting.view, setting.size
 
     def draw(frame: Frame) -> None:
         program = frame.program("front.vert", "front.frag", view.projection, {})
-        draw_mesh(frame, view, program, [normals(frame, view), occlusion(frame, scene)])
+        attributes = [normals(frame, view), occlusion(frame, setting.scene)]
+        draw_mesh(frame, frame.inputs["mesh"], view, program, attributes, "back" if setting.outside_only else "")
 
     return Pass(
         "front",
@@ -23,18 +26,16 @@ def front(scene: Scene, view: View, size: tuple[int, int]) -> Pass:
         reads=("mesh",) if lacking else ("mesh", "occlusion"),
         unread={"occlusion": lacking} if lacking else {},
         only_for={"occlusion": "surface"},
-        writes={"front": TextureSpec(size, 1), "surface": TextureSpec(size, 4)},
+        writes={"front": TextureSpec(size, 1), "surface": TextureSpec(size, 4), "coverage": TextureSpec(size, DEPTH)},
         depth_test=True,
     )
 
 
-def no_occlusion_because(scene: Scene) -> str:
+def no_bake_because(setting: Setting) -> str:
     """Why the ambient term needs no bake, or nothing if it does."""
-    if not scene.occlusion.enabled:
-        return "occlusion.enabled is false"
-    if not any(scene.light.ambient):
-        return "light.ambient is 0"
-    return "" if scene.material.ambient else "material.ambient is 0"
+    if setting.scene.occlusion.method != "baked":
+        return setting.lacking("occlusion") or 'occlusion.method is "screen-space"'
+    return setting.lacking("occlusion")
 
 
 def occlusion(frame: Frame, scene: Scene) -> Attribute:

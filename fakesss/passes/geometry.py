@@ -2,7 +2,7 @@
 
 from collections.abc import Callable, Hashable
 from dataclasses import dataclass
-from typing import Any
+from typing import Any, Literal
 
 import moderngl
 import numpy as np
@@ -23,17 +23,22 @@ class Upload:
         self.buffer.release()
 
 
+Cull = Literal["", "front", "back"]
 Attribute = tuple[Any, str, str]  # moderngl's (buffer, format, name)
 
 
-def draw_mesh(frame: Frame, view: View, program: Any, attributes: list[Attribute]) -> None:
-    """Draw all faces; `in_eye` is added to the attributes."""
-    mesh: Mesh = frame.inputs["mesh"]
+def draw_mesh(frame: Frame, mesh: Mesh, view: View, program: Any, attributes: list[Attribute], cull: Cull = "") -> None:
+    """Draw the faces but those turned as `cull` says; `in_eye` is added to the attributes."""
+    context = frame.gpu.context
     positions = upload(frame, ("positions", mesh.sha256), lambda: view.to_eye(mesh.positions), view.pose)
     faces = upload(frame, ("faces", mesh.sha256), lambda: mesh.faces.astype(np.int32))
     content = [(positions, "3f", "in_eye"), *attributes]
-    vertices = frame.gpu.context.vertex_array(program, content, faces, index_element_size=4)
+    vertices = context.vertex_array(program, content, faces, index_element_size=4)
+    if cull:
+        context.cull_face = cull
+        context.enable(moderngl.CULL_FACE)
     vertices.render(moderngl.TRIANGLES)
+    context.disable(moderngl.CULL_FACE)
     vertices.release()
 
 

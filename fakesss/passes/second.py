@@ -1,18 +1,32 @@
-"""The second layer: the nearest surface behind the front layer, by one step of depth peeling."""
+"""Where the light of a pixel is taken to have entered the object: one of several layers, by what the scene says."""
 
-from fakesss.camera import View
-from fakesss.frame import Frame
-from fakesss.frame_graph import Pass, TextureSpec
-from fakesss.passes.geometry import draw_mesh
-from fakesss.scene import Scene
+from fakesss.calls import Setting
+from fakesss.frame_graph import Choice
+
+EXITS = {"first-interval": "first_exit", "total-path": "path_exit", "bridged": "bridged_exit", "local": "local_exit"}
 
 
-def second(scene: Scene, view: View, size: tuple[int, int]) -> Pass:
-    """Reads `mesh` and `front`; writes `second` (depth, see common_layers.glsl; 0 where there is none)."""
-    published = int(scene.style == "as published")
+def first_exit(setting: Setting) -> Choice:
+    """The end of the first interval: the nearest back face of a solid seen from outside, else by peeling."""
+    method, view = setting.scene.layers.method, setting.view
+    if setting.published:
+        return Choice("first_exit", "peeled", "as published", {"nearest_back": 'style is "as published"'})
+    if method == "peel":
+        return Choice("first_exit", "peeled", 'layers.method is "peel"', {"nearest_back": 'layers.method is "peel"'})
+    if setting.outside_only:
+        why = "the mesh is a solid seen from outside, so its nearest back face ends the first interval"
+        return Choice("first_exit", "nearest_back", why, {"peeled": why})
+    why = (
+        "a clip plane or the camera may cut the object open, so front faces do not hide all back faces"
+        if view.clips_sphere
+        else "the mesh is open or passes through itself, so front faces do not hide all back faces"
+    )
+    return Choice("first_exit", "peeled", why, {"nearest_back": why})
 
-    def draw(frame: Frame) -> None:
-        program = frame.program("second.vert", "second.frag", view.projection, {"AS_PUBLISHED": published})
-        draw_mesh(frame, view, program, [])
 
-    return Pass("second", draw, reads=("mesh", "front"), writes={"second": TextureSpec(size, 1)}, depth_test=True)
+def second(setting: Setting) -> Choice:
+    """The second layer, real or as far behind the front as `material.thickness` says."""
+    kind = setting.scene.material.thickness
+    why = f'material.thickness is "{kind}"'
+    others = {exit: why for name, exit in EXITS.items() if name != kind}
+    return Choice("second", EXITS[kind], why, others)

@@ -4,59 +4,73 @@ from typing import Any
 
 import numpy as np
 
-from fakesss.camera import View, direction
+from fakesss.calls import Setting
+from fakesss.camera import direction
 from fakesss.frame import Frame
 from fakesss.frame_graph import Pass, TextureSpec
-from fakesss.scene import Scene
+
+THICKNESSES = ("thickness", "blurred_thickness")
 
 
-def shade(scene: Scene, view: View, size: tuple[int, int]) -> Pass:
-    """Reads `front`, `surface` and one thickness; writes `shaded` (linear RGB times coverage, coverage)."""
-    unread = thickness_not_read(scene)
-    layer = tuple(name for name in ("thickness", "blurred_thickness") if name not in unread)
+def shade(setting: Setting) -> Pass:
+    """Reads `front`, `surface` and one thickness; writes `shaded` (linear RGB over the background, 1 where covered)."""
+    unread = thickness_not_read(setting)
+    layer = tuple(name for name in THICKNESSES if name not in unread)
+    specular = not setting.lacking("specular")
     constants = {
-        **surface_uniforms(scene, view),
-        **(backlight_uniforms(scene) if layer else {}),
+        **surface_uniforms(setting),
+        **(specular_uniforms(setting) if specular else {}),
+        **(backlight_uniforms(setting) if layer else {}),
     }
+
+    def draw(frame: Frame) -> None:
+        frame.fill("shade.frag", constants, HIGHLIGHT=int(specular))
+
     return Pass(
         "shade",
-        lambda frame: draw(frame, constants),
-        reads=("front", "surface", *layer),
+        draw,
+        reads=("surface", "coverage", *layer),
         unread=unread,
-        writes={"shaded": TextureSpec(size, 4)},
+        writes={"shaded": TextureSpec(setting.size, 4)},
+        mask="coverage",
+        clear=(*setting.scene.background, 0.0),
+        merges=THICKNESSES,
     )
 
 
-def draw(frame: Frame, uniforms: dict[str, Any]) -> None:
-    frame.fill("shade.frag", uniforms)
-
-
-def thickness_not_read(scene: Scene) -> dict[str, str]:
+def thickness_not_read(setting: Setting) -> dict[str, str]:
     """Which thicknesses the picture does not call for, and why."""
-    if scene.material.backlight == 0:
-        return dict.fromkeys(("thickness", "blurred_thickness"), "material.backlight is 0")
-    if scene.blur.enabled:
-        return {"thickness": "blur.enabled is true, so the softened one is read"}
-    return {"blurred_thickness": "blur.enabled is false"}
+    if no_backlight := setting.lacking("backlight"):
+        return dict.fromkeys(THICKNESSES, no_backlight)
+    if no_blur := setting.lacking("blur"):
+        return {"blurred_thickness": no_blur}
+    return {"thickness": "blur.enabled is true, so the softened one is read"}
 
 
-def surface_uniforms(scene: Scene, view: View) -> dict[str, Any]:
-    """What the ambient, diffuse and specular terms need, as eq. 3.7 to 3.9 multiply it out."""
-    material, light = scene.material, scene.light
+def surface_uniforms(setting: Setting) -> dict[str, Any]:
+    """What the ambient and diffuse terms need, as eq. 3.7 and 3.8 multiply it out."""
+    material, light = setting.scene.material, setting.scene.light
     reflectance = np.array(material.diffuse)
     return {
-        "tangent": view.tangent,
-        "to_light": tuple(view.rotation @ direction(light.azimuth, light.elevation)),
+        "to_light": tuple(setting.view.rotation @ direction(light.azimuth, light.elevation)),
         "ambient_colour": tuple(material.ambient * reflectance * light.ambient),
         "diffuse_colour": tuple(material.diffuse_contribution * reflectance * light.diffuse),
-        "specular_colour": tuple(material.specular_contribution * material.specular * np.array(light.specular)),
-        "shininess": material.shininess,
-        "exposure": scene.exposure,
+        "exposure": setting.scene.exposure,
     }
 
 
-def backlight_uniforms(scene: Scene) -> dict[str, Any]:
+def specular_uniforms(setting: Setting) -> dict[str, Any]:
+    """What the highlight needs (eq. 3.9)."""
+    material, light = setting.scene.material, setting.scene.light
+    return {
+        "tangent": setting.view.tangent,
+        "specular_colour": tuple(material.specular_contribution * material.specular * np.array(light.specular)),
+        "shininess": material.shininess,
+    }
+
+
+def backlight_uniforms(setting: Setting) -> dict[str, Any]:
     """What the backlight term needs (eq. 3.10)."""
-    material = scene.material
+    material = setting.scene.material
     colour = material.backlight * (np.array(material.diffuse) + material.diffuse_weight)
     return {"backlight_colour": tuple(colour), "thickness_exponent": material.thickness_exponent}

@@ -1,27 +1,39 @@
-"""Thickness along the view axis between the first two layers, in sphere diameters."""
+"""Thickness along the view axis between the front and the second layer, in sphere diameters."""
 
-from fakesss.camera import View
+from collections.abc import Mapping
+from typing import Any
+
+from fakesss.calls import Setting
 from fakesss.frame import Frame
 from fakesss.frame_graph import Pass, TextureSpec
 from fakesss.mesh import Mesh
-from fakesss.scene import Scene
 
 
-def thickness(scene: Scene, view: View, size: tuple[int, int]) -> Pass:
-    """Reads `mesh`, `front` and `second`; writes `thickness` (0..1)."""
+def thickness(setting: Setting) -> Pass:
+    """Reads `mesh`, `front` and `second`; writes `thickness` (0..1). The shading can compute it in place."""
+
+    def in_place(inputs: Mapping[str, Any]) -> tuple[dict[str, Any], dict[str, int]]:
+        return {"open_thickness": open_thickness(inputs["mesh"], setting)}, {}
 
     def draw(frame: Frame) -> None:
-        frame.fill("thickness.frag", {"open_thickness": open_thickness(frame.inputs["mesh"], scene, view)})
+        frame.fill("thickness.frag", in_place(frame.inputs)[0])
 
-    return Pass("thickness", draw, reads=("mesh", "front", "second"), writes={"thickness": TextureSpec(size, 1)})
+    return Pass(
+        "thickness",
+        draw,
+        reads=("mesh", "front", "second", "coverage"),
+        writes={"thickness": TextureSpec(setting.size, 1)},
+        mask="coverage",
+        in_place=in_place,
+    )
 
 
-def open_thickness(mesh: Mesh, scene: Scene, view: View) -> float:
+def open_thickness(mesh: Mesh, setting: Setting) -> float:
     """Thickness of a pixel with no second layer.
 
     A closed surface that no clip plane cuts always has one, except where it is thinner than the peel can part: 0.
     Anything else follows the scene's stated policy.
     """
-    if mesh.watertight and not view.clips_sphere:
+    if mesh.watertight and not setting.view.clips_sphere:
         return 0.0
-    return {"thin": 0.0, "thick": 1.0}[scene.open_surface]
+    return {"thin": 0.0, "thick": 1.0}[setting.scene.open_surface]

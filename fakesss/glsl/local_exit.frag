@@ -1,0 +1,7 @@
+// Where a first interval of the baked length would end.
+in float leave;
+out float local_exit;
+
+void main() {
+    local_exit = leave;
+}
