@@ -17,7 +17,7 @@ class Background:
     """Does pieces of work in the order given, at most so many at once that memory stays flat.
 
     Nothing given is lost: leaving the block waits for all of it, also when an error or Ctrl-C ends the block. The
-    first piece's error is raised by the next `submit` or, in a block without an error of its own, on leaving.
+    error of a piece is raised by a later `submit` or, in a block without an error of its own, on leaving.
     """
 
     def __init__(self, size: tuple[int, int]) -> None:
@@ -35,7 +35,7 @@ class Background:
             self.pending.popleft().result()
 
     def submit(self, work: Callable[[], None]) -> None:
-        """Hand over `work`; waits while too much is under way."""
-        while self.pending and (len(self.pending) >= self.limit or self.pending[0].done()):
-            self.pending.popleft().result()
+        """Hand over `work`, then wait while too much is under way."""
         self.pending.append(self.pool.submit(work))
+        while self.pending and (len(self.pending) > self.limit or self.pending[0].done()):
+            self.pending.popleft().result()

@@ -1,4 +1,5 @@
 import io
+import tracemalloc
 from pathlib import Path
 from typing import Any
 
@@ -8,7 +9,7 @@ import pytest
 from numpy.typing import NDArray
 from PIL import Image, ImageCms
 
-from fakesss.colour import decode_srgb
+from fakesss.colour import decode_srgb, to_8bit
 from fakesss.image_io import encode_png, encode_png8, read_picture, write_image
 from fakesss.problem import BadInput
 
@@ -30,6 +31,27 @@ def test_png_bytes_are_the_same_every_time_and_leave_coverage_out(pixels: NDArra
     linear = decode_srgb(pixels / 255)
     with_coverage = np.concatenate([linear, np.zeros((11, 17, 1))], axis=2)
     assert encode_png(linear) == encode_png(with_coverage) == encode_png8(pixels)
+
+
+@pytest.mark.parametrize(("height", "width"), [(5000, 5000), (1, 16384), (16384, 1), (4096, 4095)])
+def test_a_huge_picture_takes_little_beside_its_file(height: int, width: int) -> None:
+    row = np.linspace(0, 1, width * 4, dtype=np.float32).reshape(1, width, 4)
+    linear = np.broadcast_to(row, (height, width, 4))
+    tracemalloc.start()
+    try:
+        file = encode_png(linear)
+        peak = tracemalloc.get_traced_memory()[1]
+    finally:
+        tracemalloc.stop()
+    assert peak < 2 * len(file) + 16e6  # the picture itself, were it copied once, is 400 MB
+    shown = read_huge(file)
+    assert shown.shape == (height, width, 3)
+    np.testing.assert_array_equal(shown[[0, height // 2, -1]], np.broadcast_to(to_8bit(row[..., :3]), (3, width, 3)))
+
+
+def read_huge(file: bytes) -> NDArray[np.uint8]:
+    with Image.open(io.BytesIO(file)) as picture:
+        return np.asarray(picture)
 
 
 @pytest.mark.parametrize("channels", [3, 4])

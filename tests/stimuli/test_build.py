@@ -3,7 +3,9 @@
 import hashlib
 import io
 import json
+import os
 import shutil
+import time
 from pathlib import Path
 from typing import Any
 
@@ -12,9 +14,11 @@ import pytest
 import trimesh
 from PIL import Image
 
+from benchmarks.sweep import AtOnce
 from fakesss.problem import BadInput
 from stimuli import build as building
 from stimuli.build import build, verify
+from stimuli.store import Store
 
 STUDY = """title = "x"
 [scene]
@@ -112,6 +116,65 @@ def test_an_interrupted_build_continues(folder: Path, monkeypatch: pytest.Monkey
     build(folder)
     assert drawn == ["img04"]
     assert sorted(content(folder)) == ["img01.png", "img02.png", "img03.png", "img04.png", "manifest.json"]
+
+
+def test_an_interruption_keeps_pictures_that_are_still_being_written(
+    folder: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    put, draw = Store.put, building.draw
+
+    def slow(self: Store, key: str, drawn: Any) -> None:
+        time.sleep(0.2)
+        put(self, key, drawn)
+
+    def interrupted(stimulus: Any, **kwargs: Any) -> Any:
+        if stimulus.id == "img04":
+            raise KeyboardInterrupt
+        return draw(stimulus, **kwargs)
+
+    monkeypatch.setattr(Store, "put", slow)
+    monkeypatch.setattr(building, "draw", interrupted)
+    with pytest.raises(KeyboardInterrupt):
+        build(folder)
+    assert len(list((folder / "stimuli" / ".build").glob("*.json"))) == 2
+
+
+def test_a_full_disk_is_one_sentence_and_the_build_continues(folder: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    put, calls = Store.put, []
+
+    def full(self: Store, key: str, drawn: Any) -> None:
+        calls.append(key)
+        if len(calls) == 2:
+            raise BadInput("stimuli: cannot be written (No space left on device); check the folder's space")
+        put(self, key, drawn)
+
+    monkeypatch.setattr(Store, "put", full)
+    with pytest.raises(BadInput, match="No space left on device"):
+        build(folder)
+    assert not (folder / "stimuli" / "manifest.json").exists()
+    monkeypatch.setattr(Store, "put", put)
+    drawn = drawn_ids(monkeypatch)
+    build(folder)
+    assert drawn == ["img02"]
+    assert verify(folder) == []
+
+
+def test_the_overlap_changes_no_byte(folder: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    shutil.copytree(folder, tmp_path / "again")
+    build(folder)
+    monkeypatch.setattr(building, "Background", AtOnce)
+    build(tmp_path / "again")
+    assert content(folder) == content(tmp_path / "again")
+
+
+def dies(task: Any, *, size: Any, folder: Any) -> None:
+    os._exit(1)
+
+
+def test_a_drawing_process_that_dies_is_one_sentence(folder: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(building, "draw_one", dies)
+    with pytest.raises(BadInput, match="a drawing process died; build with fewer --jobs"):
+        build(folder, jobs=2)
 
 
 def test_a_tampered_picture_is_drawn_again_and_verify_tells(folder: Path) -> None:
