@@ -5,18 +5,18 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from fakesss.colour import decode_srgb, to_8bit
-from fakesss.contact_sheet import Panel, layered
+from fakesss.colour import decode_srgb
+from fakesss.contact_sheet import layered
 from fakesss.frame import Made
 from fakesss.frame_graph import Bake, Plan, Verdict
 from fakesss.pipeline import build, samples_of
 from fakesss.renderer import PICTURE, shared_renderer
 from fakesss.scene import Scene
+from fakesss.shapes import load_object
+from fakesss.solidity import is_solid
+from fakesss.views import ROWS, views
 
 Float = NDArray[np.float64]
-VIEWS = ("front", "second", "thickness", "blurred_thickness", "surface")
-WITH_OCCLUSION = {"occlusion.enabled": True, "material.ambient": 1, "light.ambient": (1, 1, 1)}
-ONLY_BACKLIGHT = {"material.ambient": 0, "material.diffuse_contribution": 0, "material.specular_contribution": 0}
 
 
 def explain(scene: Scene, timed: bool = False) -> dict[str, Any]:
@@ -46,7 +46,7 @@ def explain(scene: Scene, timed: bool = False) -> dict[str, Any]:
 
 def compiled(scene: Scene) -> Plan:
     """The plan of the scene's picture."""
-    return build(scene, samples_of(scene)).compile((PICTURE,))
+    return build(scene, samples_of(scene), is_solid(load_object(scene.object))).compile((PICTURE,))
 
 
 def described(verdict: Verdict) -> dict[str, Any]:
@@ -79,23 +79,7 @@ def graph(scene: Scene) -> str:
 
 
 def contact_sheet(scene: Scene) -> Float:
-    """Every intermediate and the picture on one labelled sheet: (H, W, 3) linear RGB.
-
-    Intermediates are shown whether or not the picture calls for them; `explain` tells which it does.
-    """
-    renderer = shared_renderer()
-    layers = renderer.data(scene.replace(WITH_OCCLUSION), VIEWS)
-    covered = layers["front"] > 0
-    glow = renderer.render(scene.replace(ONLY_BACKLIGHT)).image
-    normals = np.where(covered[..., None], layers["surface"][..., :3] * 0.5 + 0.5, 0.0)
-    panels = [
-        Panel("front layer", layers["front"] - 1, covered, "depth into the sphere, radii", "cividis_r"),
-        Panel("second layer", layers["second"] - 1, layers["second"] > 0, "same", "cividis_r"),
-        Panel("thickness", layers["thickness"], covered, "sphere diameters", "magma_r"),
-        Panel("softened thickness", layers["blurred_thickness"], covered, "what the light sees", "magma_r"),
-        Panel("normals", to_8bit(decode_srgb(normals)), covered, "right, up, to the viewer"),
-        Panel("occlusion", layers["surface"][..., 3], covered, "share of the hemisphere open", "gray", (0.0, 1.0)),
-        Panel("backlight alone", to_8bit(glow[..., :3]), covered, "(1 - t)^r (Kd + Kb)"),
-        Panel("picture", to_8bit(renderer.render(scene).image[..., :3]), covered, scene.object),
-    ]
-    return decode_srgb(np.asarray(layered(panels)) / 255.0)
+    """All of `fakesss.views` and the picture on one labelled sheet: (H, W, 3) linear RGB."""
+    made = views(scene)
+    sheet = layered([{name: made[name] for name in row} for row in ROWS])
+    return decode_srgb(np.asarray(sheet) / 255.0)

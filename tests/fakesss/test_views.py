@@ -1,0 +1,55 @@
+"""The views by name: complete, documented, and the data that the renderer gives."""
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from fakesss.contact_sheet import Panel, Plot
+from fakesss.profile_plot import Profile, profile_plot
+from fakesss.renderer import Renderer
+from fakesss.scene import Scene
+from fakesss.views import ROWS, runs, views
+
+DOCS = Path(__file__).parents[2] / "docs" / "views.md"
+NAMES = [name for row in ROWS for name in row]
+
+
+@pytest.mark.gl
+def test_every_view_is_made_and_holds_data(renderer: Renderer) -> None:
+    scene = Scene(object="torus:4000", size=(60, 40))
+    made = views(scene)
+    assert list(made) == NAMES
+    data = renderer.data(scene, ("front", "second", "thickness", "blurred_thickness"))
+    panels = {name: view for name, view in made.items() if isinstance(view, Panel)}
+    for name in ("thickness", "blurred_thickness"):
+        assert (panels[name].values == data[name]).all()
+    for name in ("front", "second"):
+        assert (panels[name].values == data[name] - 1).all()
+    assert (panels["softening"].values == data["blurred_thickness"] - data["thickness"]).all()
+    assert all(panel.values.shape[:2] == (40, 60) for panel in panels.values())
+    plots = [view.draw((300, 200)) for view in made.values() if isinstance(view, Plot)]
+    assert [drawing.shape for drawing in plots] == [(200, 300, 3)] * 2
+
+
+@pytest.mark.parametrize("name", NAMES)
+def test_every_view_is_documented(name: str) -> None:
+    assert f"`{name}`" in DOCS.read_text(encoding="utf-8")
+
+
+def test_runs_are_marked_once_in_their_middle() -> None:
+    marked = np.array([1, 1, 0, 0, 1, 0, 1, 1, 1], bool)
+    assert runs(np.arange(9.0), marked) == [0.5, 4, 7]
+    assert runs(np.arange(3.0), np.zeros(3, bool)) == []
+
+
+def test_the_profile_follows_its_curves() -> None:
+    """A hill in the middle third: the drawing differs from an empty one there, and nowhere above the curve."""
+    across = np.linspace(-0.5, 0.5, 101)
+    nothing = np.full(101, np.nan)
+    empty = profile_plot(Profile(across, nothing, nothing, []), (400, 300))
+    hill = np.where(np.abs(across) < 0.17, 0.3, 0.01)
+    drawn = profile_plot(Profile(across, hill, hill, [0.0]), (400, 300))
+    assert empty.shape == drawn.shape == (300, 400, 3)
+    filled = drawn.astype(int).sum(axis=2)
+    assert filled[150, 190] > filled[150, 90] and filled[150, 190] > filled[30, 190]
