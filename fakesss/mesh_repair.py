@@ -14,10 +14,14 @@ from numpy.typing import NDArray
 from scipy.sparse import coo_array
 from scipy.sparse.csgraph import breadth_first_order, connected_components
 
+from fakesss.nested_boxes import NestedBoxes
+
 Floats = NDArray[np.float64]
 Floats32 = NDArray[np.float32]
 Indices = NDArray[np.integer[Any]]
 Faces = NDArray[np.int32]
+
+NO_VOLUME = 1e-12  # of the sum of its wedges' volumes: the rounding of a closed surface that encloses nothing
 
 
 def counted(number: int, one: str, many: str) -> str:
@@ -162,29 +166,45 @@ def wind_alike(
 def turn_outwards(positions: Floats32, faces: Faces, part: NDArray[np.int32], repairs: list[str]) -> Faces:
     """Faces of closed surfaces that faced inwards reversed, with whatever closed surfaces lie inside them.
 
-    A cavity (a closed surface facing inwards inside another) is meant and stays.
+    A cavity (a closed surface facing inwards inside another) is meant and stays, and so does a surface around nothing.
     """
     corners = positions[faces].astype(np.float64)
-    volume = np.bincount(part, np.einsum("ij,ij->i", corners[:, 0], np.cross(corners[:, 1], corners[:, 2])) / 6)
-    low, high = part_bounds(corners, part, len(volume))
-    reverse = np.zeros(len(volume), bool)
-    for index in np.flatnonzero(volume < 0):
-        around = (low <= low[index]).all(axis=1) & (high >= high[index]).all(axis=1)
-        around[index] = False
-        sample = corners[np.argmax(part == index)].mean(axis=0)
-        inside_another = any(
-            abs(winding_number(corners[part == other], sample)) > 0.5 for other in np.flatnonzero(around)
-        )
-        if inside_another or not is_closed(faces[part == index]):
+    wedges = np.einsum("ij,ij->i", corners[:, 0], np.cross(corners[:, 1], corners[:, 2]))
+    inwards = np.bincount(part, wedges) < -NO_VOLUME * np.bincount(part, np.abs(wedges))
+    suspects = np.flatnonzero(inwards & ~open_parts(faces, part))
+    if not len(suspects):
+        return np.ascontiguousarray(faces)
+    boxes = NestedBoxes(*part_bounds(corners, part, len(inwards)))
+    order = np.argsort(part, kind="stable")
+    start = np.searchsorted(part[order], np.arange(len(inwards) + 1))
+
+    def surface(index: int) -> Floats:
+        return corners[order[start[index] : start[index + 1]]]
+
+    def holds(outer: int, inner: int) -> bool:
+        return abs(winding_number(surface(outer), surface(inner)[0].mean(axis=0))) > 0.5
+
+    reverse = np.zeros(len(inwards), bool)
+    for index in suspects.tolist():
+        if any(holds(other, index) for other in boxes.around(index).tolist()):
             continue
-        within = (low >= low[index]).all(axis=1) & (high <= high[index]).all(axis=1)
-        for other in np.flatnonzero(within):
-            point = corners[np.argmax(part == other)].mean(axis=0)
-            reverse[other] |= other == index or abs(winding_number(corners[part == index], point)) > 0.5
+        for other in boxes.within(index).tolist():
+            reverse[other] |= other == index or holds(index, other)
     if reverse.any():
         number = counted(int(reverse.sum()), "closed surface", "closed surfaces")
         repairs.append(f"Turned {number} that faced inwards.")
     return np.ascontiguousarray(np.where(reverse[part][:, None], faces[:, ::-1], faces))
+
+
+def open_parts(faces: Faces, part: NDArray[np.int32]) -> NDArray[np.bool_]:
+    """Whether a connected part is no closed surface by itself, as `is_closed` says of a whole."""
+    name, direction = half_edges(faces)
+    owner = np.repeat(part, 3)
+    order = np.lexsort((name, owner))
+    changes = (np.diff(name[order]) != 0) | (np.diff(owner[order]) != 0)
+    starts = np.flatnonzero(np.concatenate([[True], changes]))
+    unbalanced = np.add.reduceat(direction[order].astype(np.int64), starts) != 0
+    return np.bincount(owner[order][starts], unbalanced) > 0
 
 
 def part_bounds(corners: Floats, part: NDArray[np.int32], parts: int) -> tuple[Floats, Floats]:
