@@ -16,7 +16,7 @@ from fakesss.scene import Camera
 Float = NDArray[np.float64]
 
 SPHERE_MARGIN = 1e-4  # radii; keeps vertices that lie on the sphere clear of rounding at the clip planes
-NEAREST = 1e-3  # radii; the near plane of a camera inside the sphere: 24 bits of depth still part 1e-4 radii at depth 1
+NEAREST = 1e-3  # radii; no near plane is nearer: 24 bits of depth still part 1e-4 radii at depth 1
 
 
 def direction(azimuth: float, elevation: float) -> Float:
@@ -40,7 +40,7 @@ class View:
         """The view of `camera` on a picture of `size` (width, height); the field of view is its shorter side's."""
         half = math.radians(camera.field_of_view) / 2
         distance = camera.distance if camera.distance is not None else 1 / math.sin(half)
-        near = camera.near if camera.near is not None else max(distance - 1 - SPHERE_MARGIN, NEAREST)
+        near = max(camera.near if camera.near is not None else distance - 1 - SPHERE_MARGIN, NEAREST)
         far = camera.far if camera.far is not None else max(distance + 1 + SPHERE_MARGIN, 2 * near)
         near = near if near < far else far / 2
         towards = direction(camera.azimuth, camera.elevation)
@@ -58,8 +58,21 @@ class View:
     @property
     def projection(self) -> dict[str, Any]:
         """The uniforms of `glsl/common_projection.glsl`."""
-        room = (self.distance - self.near, self.far - self.distance)
-        return {"tangent": self.tangent, "clip": (self.near, self.far), "room": room, "distance": self.distance}
+        near, far = self.drawn_between
+        room = (self.distance - near, far - self.distance)
+        return {"tangent": self.tangent, "planes": (near, far), "room": room, "distance": self.distance}
+
+    @property
+    def drawn_between(self) -> tuple[float, float]:
+        """The near and far distances that the depth buffer spans.
+
+        A plane that does not cut the sphere is moved up to it: nothing lies beyond, and the depth buffer parts more.
+        Behind the sphere a radius is left free: in a triangle smaller than a pixel a rasteriser carries depth beyond
+        that of the corners, and what it takes for farther than the far plane is lost.
+        """
+        near = self.near if self.near > self.distance - 1 else max(self.distance - 1 - SPHERE_MARGIN, NEAREST)
+        far = self.far if self.far < self.distance + 1 else self.distance + 2
+        return (near, far) if near < far else (self.near, self.far)
 
     @property
     def clips_sphere(self) -> bool:

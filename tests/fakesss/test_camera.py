@@ -57,6 +57,19 @@ def test_either_plane_may_clip_the_sphere(planes: dict[str, float], clips: bool)
     assert View.of(Camera(distance=3, **planes), (64, 64)).clips_sphere == clips
 
 
+@pytest.mark.parametrize("distance", [0.5, 1.00001, 3.0, 5e3])
+def test_planes_that_cut_nothing_cost_no_depth(distance: float) -> None:
+    wide = View.of(Camera(distance=distance, near=1e-9, far=1e4), (64, 64))
+    fitted = View.of(Camera(distance=distance), (64, 64))
+    assert wide.drawn_between == fitted.drawn_between
+    assert fitted.drawn_between[0] >= NEAREST and fitted.drawn_between[1] > distance + 1
+
+
+def test_planes_that_cut_stay_where_they_are() -> None:
+    assert View.of(Camera(distance=3, near=2.5, far=3.5), (64, 64)).drawn_between == (2.5, 3.5)
+    assert View.of(Camera(distance=3, near=0.5, far=1.0), (64, 64)).drawn_between == (0.5, 1.0)
+
+
 @given(st.floats(0.01, 100), st.floats(1.001, 1e4), st.floats(0, 1))
 def test_depth_there_and_back(near: float, ratio: float, share: float) -> None:
     far = near * ratio
