@@ -14,6 +14,7 @@ from fakesss.passes.mesh import mesh
 from fakesss.passes.occlusion import occlusion
 from fakesss.passes.peel import deeper, peel
 from fakesss.passes.resolve import image, resolve
+from fakesss.passes.screen_occlusion import sample_occlusion, screen_occlusion
 from fakesss.passes.second import first_exit, second
 from fakesss.passes.shade import shade
 from fakesss.passes.thickness import thickness
@@ -49,6 +50,8 @@ def build(scene: Scene, samples: int = 1, solid: bool = False, forced: frozenset
             second(setting),
             thickness(setting),
             blur(setting),
+            sample_occlusion(setting),
+            screen_occlusion(setting),
             shade(setting),
             resolve(setting),
             image(setting),

@@ -3,6 +3,7 @@
 #include "common_layers.glsl"
 
 #define HIGHLIGHT 0  // 1: there is a highlight
+#define HAS_SCREEN_OCCLUSION 0  // 1: ambient occlusion comes from the front layer, and that of `surface` is 1
 #define HAS_THICKNESS 0  // 1: the backlight reads the exact second layer; 2: computed here
 #define HAS_BLURRED_THICKNESS 0  // 1: the backlight reads the softened second layer; 2: computed here
 
@@ -11,6 +12,9 @@ uniform vec3 to_light;        // unit, eye frame
 uniform vec3 ambient_colour;  // ka Kd Ia
 uniform vec3 diffuse_colour;  // wd Kd Id
 uniform float exposure;
+#if HAS_SCREEN_OCCLUSION
+uniform sampler2D screen_occlusion;
+#endif
 #if HIGHLIGHT
 uniform vec2 tangent;         // of the half angles of the picture's width and height
 uniform vec3 specular_colour; // ws ks Is
@@ -63,6 +67,9 @@ void main() {
     vec4 normal_occlusion = texelFetch(surface, here, 0);
     vec3 normal = normal_occlusion.xyz;
     vec3 colour = normal_occlusion.w * ambient_colour;
+#if HAS_SCREEN_OCCLUSION
+    colour *= texelFetch(screen_occlusion, here, 0).r;
+#endif
     colour += lambert(dot(normal, to_light)) * diffuse_colour;
 #if HIGHLIGHT
     colour += highlight(normal, place);

@@ -10,12 +10,14 @@ from fakesss.frame import Frame
 from fakesss.frame_graph import Pass, TextureSpec
 
 THICKNESSES = ("thickness", "blurred_thickness")
+SCREEN_OCCLUSION = ("screen_occlusion",)
 
 
 def shade(setting: Setting) -> Pass:
     """Reads `front`, `surface` and one thickness; writes `shaded` (linear RGB over the background, 1 where covered)."""
-    unread = thickness_not_read(setting)
+    unread = {**thickness_not_read(setting), **screen_occlusion_not_read(setting)}
     layer = tuple(name for name in THICKNESSES if name not in unread)
+    occlusion = tuple(name for name in SCREEN_OCCLUSION if name not in unread)
     specular = not setting.lacking("specular")
     constants = {
         **surface_uniforms(setting),
@@ -29,7 +31,7 @@ def shade(setting: Setting) -> Pass:
     return Pass(
         "shade",
         draw,
-        reads=("surface", "coverage", *layer),
+        reads=("surface", "coverage", *occlusion, *layer),
         unread=unread,
         writes={"shaded": TextureSpec(setting.size, 4)},
         mask="coverage",
@@ -45,6 +47,13 @@ def thickness_not_read(setting: Setting) -> dict[str, str]:
     if no_blur := setting.lacking("blur"):
         return {"blurred_thickness": no_blur}
     return {"thickness": "blur.enabled is true, so the softened one is read"}
+
+
+def screen_occlusion_not_read(setting: Setting) -> dict[str, str]:
+    """Why the ambient term needs no occlusion from the front layer, or nothing if it does."""
+    if setting.scene.occlusion.method == "screen-space" and not setting.lacking("occlusion"):
+        return {}
+    return dict.fromkeys(SCREEN_OCCLUSION, setting.lacking("occlusion") or 'occlusion.method is "baked"')
 
 
 def surface_uniforms(setting: Setting) -> dict[str, Any]:

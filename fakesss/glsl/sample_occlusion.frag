@@ -1,0 +1,81 @@
+// Twin of screen_occlusion.sampled. Ambient occlusion from the front layer: Mittring, Finding next gen: CryEngine 2,
+// 2007, with points over the normal's hemisphere (Filion and McNaughton, StarCraft II: effects and techniques, 2008).
+#include "common_layers.glsl"
+
+#define SAMPLES 64  // points around each pixel
+#define UNIFORM_OVER_HEMISPHERE 0  // 1: directions spread evenly; 0: by their cosine to the normal, as irradiance weighs
+
+uniform sampler2D front;
+uniform sampler2D surface;
+uniform vec2 tangent;    // of the half angles of the picture's width and height
+uniform float distance;  // of the sphere's centre
+uniform float radius;    // of the hemisphere, sphere radii
+uniform float bias;      // sphere radii
+
+const float TURN = 6.28318530718;
+// Rotation of the directions, in sixteenths of a turn, by place in the tile: neighbours turn far apart (Bayer, 1973).
+const float TILE[16] = float[](0.0,  8.0,  2.0, 10.0,
+                              12.0,  4.0, 14.0,  6.0,
+                               3.0, 11.0,  1.0,  9.0,
+                              15.0,  7.0, 13.0,  5.0);
+const vec2 GOLDEN = vec2(-0.73736887808, 0.67549029426);  // cosine and sine of the golden angle, 2.39996 rad
+const float PLASTIC = 0.75487766625;  // 1 / 1.32472: steps of this share spread evenly, and not in step with the angles
+
+// Eye frame with depths as layers: x right, y up, z away from the viewer, measured from ORIGIN.
+vec3 unprojected(vec2 place, float layer) {
+    return vec3((2.0 * place - 1.0) * tangent * (layer - ORIGIN + distance), layer);
+}
+
+// Two unit vectors that make a frame with unit `n`: Duff and others, Building an orthonormal basis, revisited, 2017.
+void frame_around(vec3 n, out vec3 s, out vec3 t) {
+    float sign = n.z >= 0.0 ? 1.0 : -1.0;
+    float a = -1.0 / (sign + n.z);
+    float b = n.x * n.y * a;
+    s = vec3(1.0 + sign * n.x * n.x * a, sign * b, -sign * n.x);
+    t = vec3(b, sign + n.y * n.y * a, -n.y);
+}
+
+// 1 if the front layer hides `point` in the hemisphere around `middle`, 0 if not; between where what hides it is far
+// in front of the surface, and so may be another part with light between.
+float hidden(vec3 point, vec3 middle, vec3 normal) {
+    float depth = point.z - ORIGIN + distance;
+    vec2 place = 0.5 + 0.5 * point.xy / (tangent * depth);
+    if (depth <= 0.0 || place != clamp(place, 0.0, 1.0)) return 0.0;
+    ivec2 texel = min(ivec2(place * vec2(textureSize(front, 0))), textureSize(front, 0) - 1);
+    float layer = texelFetch(front, texel, 0).r;
+    if (is_empty(layer) || point.z <= layer + bias) return 0.0;
+    // What lies under the surface's own plane is no part of the hemisphere: flat and convex surfaces stay open however
+    // coarse the texels are.
+    vec3 occluder = unprojected((vec2(texel) + 0.5) / vec2(textureSize(front, 0)), layer);
+    float height = dot(occluder - middle, normal);
+    return height > bias ? clamp(2.0 - (middle.z - layer) / radius, 0.0, 1.0) : 0.0;
+}
+
+out float sampled_occlusion;
+
+void main() {
+    ivec2 here = ivec2(gl_FragCoord.xy);
+    vec3 middle = unprojected(gl_FragCoord.xy / vec2(textureSize(front, 0)), texelFetch(front, here, 0).r);
+    vec3 normal = texelFetch(surface, here, 0).xyz * vec3(1.0, 1.0, -1.0);
+    vec3 s, t;
+    frame_around(normal, s, t);
+    float tile = TILE[4 * (here.y & 3) + (here.x & 3)] / 16.0;
+    vec2 turned = vec2(cos(TURN * tile), sin(TURN * tile));
+    float reach = tile;
+    float sum = 0.0;
+    for (int i = 0; i < SAMPLES; ++i) {
+        float share = (float(i) + 0.5) / float(SAMPLES);
+#if UNIFORM_OVER_HEMISPHERE
+        float up = 1.0 - share;
+        float across = sqrt(max(1.0 - up * up, 0.0));
+#else
+        float up = sqrt(1.0 - share);
+        float across = sqrt(share);
+#endif
+        vec3 direction = (turned.x * s + turned.y * t) * across + up * normal;
+        sum += hidden(middle + reach * radius * direction, middle, normal);
+        turned = mat2(GOLDEN.x, GOLDEN.y, -GOLDEN.y, GOLDEN.x) * turned;
+        reach = fract(reach + PLASTIC);
+    }
+    sampled_occlusion = 1.0 - sum / float(SAMPLES);
+}

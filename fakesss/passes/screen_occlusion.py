@@ -1,0 +1,41 @@
+"""Ambient occlusion from the front layer, without rays: what the camera sees hides light, what it does not see cannot."""
+
+from fakesss.calls import Setting
+from fakesss.frame import Frame
+from fakesss.frame_graph import Pass, TextureSpec
+
+
+def sample_occlusion(setting: Setting) -> Pass:
+    """Reads `front` and `surface`; writes `sampled_occlusion`: the share of points around each sample that is not
+    hidden, its directions turned by a tile of 4 x 4 rotations."""
+    settings, view = setting.scene.occlusion, setting.view
+    uniforms = {
+        "tangent": view.tangent,
+        "distance": view.distance,
+        "radius": 2 * settings.radius,
+        "bias": 2 * settings.bias,
+    }
+    defines = {"SAMPLES": settings.samples, "UNIFORM_OVER_HEMISPHERE": int(settings.sampling == "uniform")}
+    return Pass(
+        "sample_occlusion",
+        lambda frame: frame.fill("sample_occlusion.frag", uniforms, **defines),
+        reads=("front", "surface", "coverage"),
+        writes={"sampled_occlusion": TextureSpec(setting.size, 1)},
+        mask="coverage",
+    )
+
+
+def screen_occlusion(setting: Setting) -> Pass:
+    """Reads `front` and `sampled_occlusion`; writes `screen_occlusion` (0..1): the mean over the tile of rotations."""
+    depth_range = 2 * setting.scene.occlusion.radius
+
+    def draw(frame: Frame) -> None:
+        frame.fill("screen_occlusion.frag", {"depth_range": depth_range})
+
+    return Pass(
+        "screen_occlusion",
+        draw,
+        reads=("front", "sampled_occlusion", "coverage"),
+        writes={"screen_occlusion": TextureSpec(setting.size, 1)},
+        mask="coverage",
+    )
