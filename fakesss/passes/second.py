@@ -14,7 +14,7 @@ def first_exit(setting: Setting) -> Choice:
     if method == "peel":
         return Choice("first_exit", "peeled", 'layers.method is "peel"', {"nearest_back": 'layers.method is "peel"'})
     if setting.outside_only:
-        why = "the mesh is a solid seen from outside, so its nearest back face ends the first interval"
+        why = "of a solid seen from outside, the nearest back face ends the first interval"
         return Choice("first_exit", "nearest_back", why, {"peeled": why})
     why = (
         "a clip plane or the camera may cut the object open, so front faces do not hide all back faces"

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from fakesss.frame import Frame, Run
-from fakesss.frame_graph import Bake, FrameGraph, FrameGraphError, Pass, TextureSpec
+from fakesss.frame_graph import DEPTH, Bake, Choice, FrameGraph, FrameGraphError, Pass, TextureSpec
 from fakesss.gpu import Gpu
 from fakesss.recent import Recent
 
@@ -47,6 +47,75 @@ def test_keeps_what_the_target_depends_on_and_says_why() -> None:
 def test_a_resource_dies_after_its_last_reader() -> None:
     plan = FrameGraph([node("a"), node("b", "a_out"), node("c", "a_out", "b_out")]).compile(["c_out"])
     assert plan.dead_after == {"a": (), "b": (), "c": ("a_out", "b_out")}
+
+
+def choosing(chosen: str, other: str) -> list[Pass | Choice]:
+    return [node("a"), node("b"), Choice("either", chosen, "it is cheaper", {other: "it is dear"}), node("c", "either")]
+
+
+def test_a_choice_keeps_what_it_chose_and_says_why() -> None:
+    plan = FrameGraph(choosing("b_out", "a_out")).compile(["c_out"])
+    assert {v.node.name: (v.kept, v.because) for v in plan.verdicts} == {
+        "a": (False, "not read by either: it is dear"),
+        "b": (True, "read by either"),
+        "either": (True, "read by c; b_out: it is cheaper"),
+        "c": (True, "c_out is asked for"),
+    }
+    assert [kept.name for kept in plan.kept] == ["b", "c"] and plan.root("either") == "b_out"
+    assert plan.dead_after == {"b": (), "c": ("b_out",)}
+
+
+@pytest.mark.gl
+def test_a_choice_copies_nothing_and_can_be_asked_for(gpu: Gpu) -> None:
+    gpu.pool.release()
+    nodes = [Pass("a", paint(1), {"a_out": SPEC}), Pass("b", paint(2), {"b_out": SPEC})]
+    graph = FrameGraph([*nodes, Choice("either", "b_out", "", {"a_out": ""})])
+    np.testing.assert_array_equal(Run(graph.compile(["either"]), gpu, Recent(1))().values["either"], 2)
+    assert len(gpu.pool.free[SPEC]) == 1
+
+
+def merging(*more: Pass) -> FrameGraph:
+    """A pass `soften` whose reader `shade` can compute it in place."""
+    soften = Pass("soften", nothing, {"soft": SPEC}, ("a_out",), in_place=lambda inputs: ({}, {}))
+    shade = Pass("shade", nothing, {"shaded": SPEC}, ("soft",), merges=("soft",))
+    return FrameGraph([node("a"), soften, shade, *more])
+
+
+def test_a_pass_with_one_reader_is_computed_there() -> None:
+    plan = merging().compile(["shaded"])
+    verdicts = {v.node.name: v for v in plan.verdicts}
+    assert verdicts["soften"].merged and verdicts["soften"].because == "computed by shade, its only reader"
+    assert plan.kept[-1].reads == ("a_out",) and [n.name for n in plan.kept] == ["a", "shade"]
+    assert plan.passes == ("a", "soften", "shade")
+
+
+def test_a_pass_with_two_readers_or_asked_for_is_drawn() -> None:
+    for plan in (
+        merging(node("other", "soft")).compile(["shaded", "other_out"]),
+        merging().compile(["shaded", "soft"]),
+    ):
+        assert "soften" in [n.name for n in plan.kept]
+
+
+@pytest.mark.gl
+def test_a_mask_keeps_drawing_to_what_it_covers(gpu: Gpu) -> None:
+    """A depth buffer that is written where the picture's left half is nearer than the far plane."""
+
+    def half(frame: Frame) -> None:
+        frame.target.clear(depth=0.5, viewport=(0, 0, 4, 4))
+
+    def fill(frame: Frame) -> None:
+        frame.fill("resolve.frag", {}, SAMPLES=1, AS_PUBLISHED=0)
+
+    shape = TextureSpec((8, 4), 4)
+    nodes = [
+        Pass("front", half, {"colour": SPEC, "coverage": TextureSpec((8, 4), DEPTH)}, depth_test=True),
+        Pass("white", lambda frame: frame.target.clear(1, 1, 1, 1), {"shaded": shape}),
+        Pass("fill", fill, {"out": shape}, ("shaded", "coverage"), mask="coverage", clear=(0.25, 0, 0, 0)),
+    ]
+    out = Run(FrameGraph(nodes).compile(["out"]), gpu, Recent(1))().values["out"]
+    np.testing.assert_array_equal(out[:, :4], 1)
+    np.testing.assert_array_equal(out[:, 4:], np.broadcast_to([0.25, 0, 0, 0], (4, 4, 4)))
 
 
 @pytest.mark.parametrize(

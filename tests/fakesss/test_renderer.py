@@ -85,22 +85,6 @@ def test_normals_of_a_sphere_are_its_directions(renderer: Renderer) -> None:
     np.testing.assert_allclose(normals[:, 2], depth, atol=2e-3)
 
 
-CULLED = [
-    ({"material.backlight": 0.0}, {"material.backlight": 1e-30}, "blur"),
-    ({"material.ambient": 0.0}, {"material.ambient": 1e-30}, "occlusion"),
-    ({"light.ambient": (0, 0, 0)}, {"light.ambient": (1e-30, 0, 0)}, "occlusion"),
-]
-
-
-@pytest.mark.parametrize(("without", "forced", "node"), CULLED, ids=[str(case[0]) for case in CULLED])
-def test_culling_changes_no_byte(renderer: Renderer, without: Any, forced: Any, node: str) -> None:
-    scene = Scene(object="torus:8000", size=(128, 128))
-    culled, kept = renderer.render(scene.replace(without)), renderer.render(scene.replace(forced))
-    ran = [{*(p["name"] for p in drawn.passes), *drawn.baked} for drawn in (culled, kept)]
-    assert node not in ran[0] and node in ran[1]
-    assert culled.image.tobytes() == kept.image.tobytes()
-
-
 def test_a_picture_is_the_same_bytes_every_time_and_in_a_new_process(renderer: Renderer) -> None:
     code = """
 import hashlib, fakesss

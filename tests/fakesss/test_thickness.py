@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 
 from fakesss import reference
 from fakesss.camera import View
+from fakesss.crossings import Crossings, bridged_paths, paths
 from fakesss.mesh import load_mesh
 from fakesss.renderer import Renderer
 from fakesss.scene import Scene
@@ -69,12 +70,13 @@ SOLIDS = [
 
 
 @pytest.mark.gl
+@pytest.mark.parametrize("method", ["auto", "peel"])
 @pytest.mark.parametrize(("name", "interval", "bounds"), SOLIDS, ids=[solid[0] for solid in SOLIDS])
 def test_thickness_of_solids(  # type: ignore[no-untyped-def]
-    renderer: Renderer, tmp_path, record_property, name, interval, bounds
+    renderer: Renderer, tmp_path, record_property, name, interval, bounds, method
 ) -> None:
     name = shell_file(tmp_path) if name == "shell" else name
-    scene = Scene(object=name, size=SIZE).replace(CAMERA)
+    scene = Scene(object=name, size=SIZE).replace({**CAMERA, "layers.method": method})
     view = View.of(scene.camera, scene.size)
     drawn = renderer.data(scene, ("thickness",))["thickness"]
     mesh = load_mesh(name) if name.endswith(".ply") else load_object(name)
@@ -89,6 +91,31 @@ def test_thickness_of_solids(  # type: ignore[no-untyped-def]
         assert error.max() < worst and p999 < most
     assert drawn.dtype == np.float32 and drawn.shape == SIZE[::-1]
     assert np.isfinite(drawn).all() and (drawn[np.isnan(exact) & ~near(exact)] == 0).all()
+
+
+BETWEEN = ["figure:30000", "knot:30000", "hand:30000", "torus:30000"]
+
+
+@pytest.mark.gl
+@pytest.mark.parametrize("kind", ["total-path", "bridged"])
+@pytest.mark.parametrize("name", BETWEEN)
+def test_longer_ways_through_solids(renderer: Renderer, name: str, kind: str) -> None:
+    """Against every crossing of rays through the same triangles, sphere diameters along the view axis."""
+    scene = Scene(object=name, size=SIZE).replace({**CAMERA, "material.thickness": kind})
+    view = View.of(scene.camera, scene.size)
+    drawn = renderer.data(scene, ("thickness",))["thickness"]
+    origins, directions = rays(view)
+    distances, sides = Crossings(load_object(name))(origins, directions)
+    forward = directions @ -view.rotation[2]
+    depths = distances * forward[:, None]
+    inside = paths(depths, sides) if kind == "total-path" else bridged_paths(depths, 2 * scene.layers.gap)
+    truth = np.where(sides[:, :1].any(axis=1), inside / 2, np.nan).reshape(SIZE[::-1])
+    alternating = (np.abs(np.cumsum(sides, axis=1) + 0.5) == 0.5).all(axis=1).reshape(truth.shape)
+    sure = off_silhouettes(truth) & alternating
+    error = np.abs(drawn - truth)[sure]
+    print(f"{name} {kind}: max {error.max():.2e} 99.9% {np.percentile(error, 99.9):.2e} pixels {error.size}")
+    assert error.size > 10_000
+    assert np.percentile(error, 99.9) < ROUNDING[1] and error.max() < 2e-3
 
 
 def near(t: Floats) -> NDArray[np.bool_]:
