@@ -26,20 +26,21 @@ class NestedBoxes:
 
     def around(self, index: int) -> Indices:
         """The other boxes that hold box `index`."""
-        near = self._near(index, largest_reach=np.inf)
+        near = self._near(index, [reach for _, _, reach in self._sizes])
         holds = (self._low[near] <= self._low[index]) & (self._high[near] >= self._high[index])
-        return near[holds.all(axis=1) & (near != index)]
+        others: Indices = near[holds.all(axis=1) & (near != index)]
+        return others
 
     def within(self, index: int) -> Indices:
         """The boxes that box `index` holds, itself among them."""
-        near = self._near(index, largest_reach=self._reach[index])
+        near = self._near(index, [self._reach[index]] * len(self._sizes))
         held = (self._low[near] >= self._low[index]) & (self._high[near] <= self._high[index])
-        return near[held.all(axis=1)]
+        inside: Indices = near[held.all(axis=1)]
+        return inside
 
-    def _near(self, index: int, largest_reach: float) -> Indices:
-        """Boxes whose centres are near enough: within their own reach, and within `largest_reach`."""
+    def _near(self, index: int, distances: list[float]) -> Indices:
+        """Boxes whose centres are no farther from that of `index` than their size's distance."""
         found = [np.zeros(0, np.int64)]
-        for same, tree, reach in self._sizes:
-            radius = min(reach, largest_reach) * ROOM
-            found.append(same[tree.query_ball_point(self._centre[index], radius, p=np.inf)])
+        for (same, tree, _), distance in zip(self._sizes, distances, strict=True):
+            found.append(same[tree.query_ball_point(self._centre[index], distance * ROOM, p=np.inf)])
         return np.concatenate(found)
