@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 from fakesss.frame_graph import DEPTH, Bake, Pass, Plan, TextureSpec
 from fakesss.gpu import Gpu
 from fakesss.recent import Recent
-from fakesss.shader_source import NOTHING, ShaderError, declared_defaults, feed
+from fakesss.shader_source import NOTHING, ShaderError, feed
 
 FULLSCREEN = "fullscreen.vert"
 IN_PLACE = 2  # value of HAS_<INPUT> where the shader computes the input itself
@@ -80,7 +80,7 @@ class Frame:
         triangle.release()
 
     def _wiring(self, fragment: str) -> dict[str, int]:
-        asked = {name for name in declared_defaults(fragment, self.gpu.programs.root) if name.startswith("HAS_")}
+        asked = {name for name in self.gpu.programs.defaults_of(fragment) if name.startswith("HAS_")}
         known = {f"HAS_{name.upper()}": int(name in self.node.reads) for name in (*self.node.reads, *self.node.unread)}
         known |= {f"HAS_{name.upper()}": IN_PLACE for node in self.node.merged for name in node.writes}
         if unknown := asked - known.keys():
