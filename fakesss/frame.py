@@ -151,16 +151,18 @@ class Run:
         """The target emptied and bound, with the tests that the pass asks for."""
         context = self.gpu.context
         flags = moderngl.DEPTH_TEST if node.depth_test or node.mask else moderngl.NOTHING
-        with context.scope(target, flags | (moderngl.BLEND if node.add else moderngl.NOTHING)):
-            target.depth_mask = not node.mask
-            target.clear(*node.clear)
-            # a mask keeps the full-screen triangle, which lies on the far plane, to where something is nearer
-            context.depth_func = ">" if node.mask else "<"
-            context.blend_func = moderngl.ONE, moderngl.ONE
-            try:
+        scope = context.scope(target, flags | (moderngl.BLEND if node.add else moderngl.NOTHING))
+        try:
+            with scope:
+                target.depth_mask = not node.mask
+                target.clear(*node.clear)
+                # a mask keeps the full-screen triangle, which lies on the far plane, to where something is nearer
+                context.depth_func = ">" if node.mask else "<"
+                context.blend_func = moderngl.ONE, moderngl.ONE
                 yield
-            finally:
-                context.depth_func = "<"
+        finally:
+            context.depth_func = "<"
+            scope.release()  # or half a kilobyte a pass would stay for good
 
     def _give_back(self, resource: str) -> None:
         value = self.live.pop(resource)
