@@ -18,6 +18,7 @@ NEW_THINGS = {
     moderngl.Buffer: ("write", "orphan"),
     moderngl.Texture: ("write",),
 }
+SETTLING = {"Context.framebuffer"}  # pooled textures are combined anew until every combination has been met
 PATHS = {
     "material.thickness_exponent": [25, 18, 30, 5],
     "material.backlight": [1.2, 0.8, 1.6, 0.1],
@@ -69,13 +70,13 @@ def test_a_sweep_of_what_leaves_the_mesh_alone_uploads_nothing_after_its_first_p
     build(study(tmp_path, path, PATHS[path]), quiet=True)
     assert len(made) == len(PATHS[path])
     assert made[0]["Context.buffer"] > 0
-    assert made[1:] == [Counter()] * (len(made) - 1)
+    assert {name for picture in made[1:] for name in picture} <= SETTLING
 
 
 @pytest.mark.gl
 def test_a_turning_camera_writes_over_the_same_buffers(tmp_path: Path, made: list[Counter[str]]) -> None:
     build(study(tmp_path, "camera.azimuth", [0.0, 30.0, 60.0, 90.0]), quiet=True)
-    assert {name for picture in made[1:] for name in picture} <= {"Buffer.write"}
+    assert {name for picture in made[1:] for name in picture} <= SETTLING | {"Buffer.write"}
 
 
 GROWTH = 24  # MiB that memory may grow by over 90 % of a sweep, of some 250: what a driver's heap is ragged by
