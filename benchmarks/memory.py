@@ -66,8 +66,11 @@ def tasks(count: int, seed: int = 2011) -> Iterator[Task]:
                 "camera.azimuth": lot.uniform(0, 360),
                 "camera.distance": lot.uniform(1.5, 4),
                 "light.elevation": lot.uniform(-90, 90),
+                "light.kind": lot.choice(("directional", "point", "spot")),
+                "light.shadows": lot.random() < 0.3,
                 "material.thickness_exponent": lot.uniform(0, 40),
                 "material.backlight": lot.choice((0.0, lot.uniform(0, 2))),
+                "material.thickness": lot.choice(("first-interval", "total-path", "bridged")),
             }
         )
         yield f"{number:06d}", Stimulus(f"img{number}", "", "factor", scene)
