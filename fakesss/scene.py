@@ -79,12 +79,14 @@ class Occlusion(Strict):
     sampling: Literal["cosine", "uniform"] = Field(
         "cosine", description="cosine: irradiance-weighted; uniform: plain share of the hemisphere"
     )
-    samples: Annotated[int, Field(ge=1, le=256)] = Field(64, description="samples per pixel, screen-space")
+    samples: Annotated[int, Field(ge=4, le=256, multiple_of=4)] = Field(
+        64, description="points around each sample of the picture, four to a direction, screen-space"
+    )
     radius: Annotated[float, Field(gt=0, le=1)] = Field(
-        0.15, description="of the hemisphere that is sampled in screen space, in sphere diameters"
+        0.4, description="of the hemisphere that is sampled, in sphere diameters, screen-space"
     )
     bias: Annotated[float, Field(ge=0, le=0.1)] = Field(
-        2e-3, description="depth by which a screen-space sample may lie behind the front layer, in sphere diameters"
+        2e-3, description="depth by which a point may lie behind the front layer, in sphere diameters, screen-space"
     )
 
 

@@ -1,8 +1,10 @@
 // Twin of screen_occlusion.sampled. Ambient occlusion from the front layer: Mittring, Finding next gen: CryEngine 2,
-// 2007, with points over the normal's hemisphere (Filion and McNaughton, StarCraft II: effects and techniques, 2008).
+// 2007, over the normal's hemisphere: Filion and McNaughton, StarCraft II: effects and techniques, 2008. Points stand
+// four to a direction, as if along a ray that is blocked if one of them is hidden, so that the share of open directions
+// is what the bake counts with rays.
 #include "common_layers.glsl"
 
-#define SAMPLES 64  // points around each pixel
+#define DIRECTIONS 16  // of the points around each sample of the picture
 #define UNIFORM_OVER_HEMISPHERE 0  // 1: directions spread evenly; 0: by their cosine to the normal, as irradiance weighs
 
 uniform sampler2D front;
@@ -12,6 +14,7 @@ uniform float distance;  // of the sphere's centre
 uniform float radius;    // of the hemisphere, sphere radii
 uniform float bias;      // sphere radii
 
+const int POINTS = 4;  // of each direction
 const float TURN = 6.28318530718;
 // Rotation of the directions, in sixteenths of a turn, by place in the tile: neighbours turn far apart (Bayer, 1973).
 const float TILE[16] = float[](0.0,  8.0,  2.0, 10.0,
@@ -61,21 +64,24 @@ void main() {
     frame_around(normal, s, t);
     float tile = TILE[4 * (here.y & 3) + (here.x & 3)] / 16.0;
     vec2 turned = vec2(cos(TURN * tile), sin(TURN * tile));
-    float reach = tile;
-    float sum = 0.0;
-    for (int i = 0; i < SAMPLES; ++i) {
-        float share = (float(i) + 0.5) / float(SAMPLES);
+    float first = tile;  // of a direction's points, as a share of the distance between them
+    float blocked = 0.0;
+    for (int i = 0; i < DIRECTIONS; ++i) {
+        float share = (float(i) + 0.5) / float(DIRECTIONS);
 #if UNIFORM_OVER_HEMISPHERE
         float up = 1.0 - share;
-        float across = sqrt(max(1.0 - up * up, 0.0));
 #else
         float up = sqrt(1.0 - share);
-        float across = sqrt(share);
 #endif
-        vec3 direction = (turned.x * s + turned.y * t) * across + up * normal;
-        sum += hidden(middle + reach * radius * direction, middle, normal);
+        vec3 direction = (turned.x * s + turned.y * t) * sqrt(1.0 - up * up) + up * normal;
+        float most = 0.0;
+        for (int k = 0; k < POINTS; ++k) {
+            float reach = radius * (float(k) + first) / float(POINTS);
+            most = max(most, hidden(middle + reach * direction, middle, normal));
+        }
+        blocked += most;
         turned = mat2(GOLDEN.x, GOLDEN.y, -GOLDEN.y, GOLDEN.x) * turned;
-        reach = fract(reach + PLASTIC);
+        first = fract(first + PLASTIC);
     }
-    sampled_occlusion = 1.0 - sum / float(SAMPLES);
+    sampled_occlusion = 1.0 - blocked / float(DIRECTIONS);
 }

@@ -1,13 +1,18 @@
-"""Ambient occlusion from the front layer, without rays: what the camera sees hides light, what it does not see cannot."""
+"""Ambient occlusion from the front layer, without rays.
+
+What it is *not*: the bake's. It knows only what the camera sees and takes that for as deep as the radius, so parts
+that are hidden or outside the picture block nothing, and it changes as the camera turns.
+"""
 
 from fakesss.calls import Setting
 from fakesss.frame import Frame
 from fakesss.frame_graph import Pass, TextureSpec
+from fakesss.screen_occlusion import POINTS
 
 
 def sample_occlusion(setting: Setting) -> Pass:
-    """Reads `front` and `surface`; writes `sampled_occlusion`: the share of points around each sample that is not
-    hidden, its directions turned by a tile of 4 x 4 rotations."""
+    """Reads `front` and `surface`; writes `sampled_occlusion`: the share of directions in which no point is hidden,
+    turned by a tile of 4 x 4 rotations."""
     settings, view = setting.scene.occlusion, setting.view
     uniforms = {
         "tangent": view.tangent,
@@ -15,7 +20,7 @@ def sample_occlusion(setting: Setting) -> Pass:
         "radius": 2 * settings.radius,
         "bias": 2 * settings.bias,
     }
-    defines = {"SAMPLES": settings.samples, "UNIFORM_OVER_HEMISPHERE": int(settings.sampling == "uniform")}
+    defines = {"DIRECTIONS": settings.samples // POINTS, "UNIFORM_OVER_HEMISPHERE": int(settings.sampling == "uniform")}
     return Pass(
         "sample_occlusion",
         lambda frame: frame.fill("sample_occlusion.frag", uniforms, **defines),
