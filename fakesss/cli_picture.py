@@ -3,7 +3,7 @@
 import re
 import sys
 import tomllib
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Mapping
 from pathlib import Path
 from typing import Any, Literal
 
@@ -47,18 +47,39 @@ def render(scene: str, changes: tuple[str, ...], size: str | None, out: str, vie
 @commands.command()
 @drawing
 @click.option("--time/--no-time", "timed", default=False, help="Draw once and report GPU times.")
+@click.option("--savings", is_flag=True, help="Measure what leaving out each effect of no weight saves.")
 @click.option("--graph", is_flag=True, help="Graphviz source of the frame graph, culled passes dashed.")
+@click.option("-o", "--out", help="Draw the frame graph: a .svg, .pdf or .png.")
 @AS_JSON
-def explain(scene: str, changes: tuple[str, ...], size: str | None, timed: bool, graph: bool, as_json: bool) -> None:
+def explain(
+    scene: str,
+    changes: tuple[str, ...],
+    size: str | None,
+    timed: bool,
+    savings: bool,
+    graph: bool,
+    out: str | None,
+    as_json: bool,
+) -> None:
     """List the passes of SCENE: kept or culled, why, what each reads and writes.
 
-    Example: fakesss explain figure --set material.backlight=0
+    Example: fakesss explain figure --set material.backlight=0 -o graph.svg
     """
     from fakesss import inspect
+    from fakesss.explanation import explained, saved
 
     described = scene_named(scene, changes, size)
+    if out:
+        inspect.draw(described, out, timed)
+        say(f"{out}: the frame graph")
     result = inspect.explain(described, timed)
-    done(result, as_json, inspect.graph(described) if graph else "\n".join(explained(result)))
+    if savings:
+        result["savings"] = inspect.savings(described)
+    if graph:
+        done(result, as_json, inspect.graph(described))
+        return
+    lines = [*explained(inspect.compiled(described), result), *saved(result.get("savings"))]
+    done(result, as_json, "\n".join(lines))
 
 
 @commands.command()
@@ -159,11 +180,3 @@ def scene_of_stimulus(name: str) -> Any:
     if entries[identity]["scene"] is None:
         raise BadInput(f"{name}: was made elsewhere, there is no scene to draw; name one of the study's own pictures")
     return Scene.from_dict(entries[identity]["scene"], f"{folder}/stimuli/manifest.json").relative_to(Path(folder))
-
-
-def explained(result: Mapping[str, Any]) -> Iterator[str]:
-    """The `explain` document as a person reads it."""
-    for entry in (*result["baked"], *result["passes"]):
-        kept = "kept  " if entry["kept"] else "culled"
-        took = f"  {entry['gpu_ms']:.2f} ms" if entry.get("gpu_ms") is not None else ""
-        yield f"{kept}  {entry['name']:10} {entry['because']}{took}"

@@ -6,15 +6,14 @@ import numpy as np
 from numpy.typing import NDArray
 
 from fakesss.colour import decode_srgb
-from fakesss.contact_sheet import layered
 from fakesss.frame import Made
-from fakesss.frame_graph import Bake, Plan, Verdict
-from fakesss.pipeline import build, samples_of
+from fakesss.frame_graph import Bake, FrameGraph, Plan, Verdict
+from fakesss.pipeline import NONE, build, samples_of
 from fakesss.renderer import PICTURE, shared_renderer
+from fakesss.savings import measured
 from fakesss.scene import Scene
 from fakesss.shapes import load_object
 from fakesss.solidity import is_solid
-from fakesss.views import ROWS, views
 
 Float = NDArray[np.float64]
 
@@ -22,7 +21,7 @@ Float = NDArray[np.float64]
 def explain(scene: Scene, timed: bool = False) -> dict[str, Any]:
     """The contract's `explain` document: every pass and baked input, kept or culled, and why.
 
-    Needs no OpenGL, and reads no mesh, unless `timed`; without it times and `cached` are None.
+    Needs no OpenGL unless `timed`; without it times and `cached` are None.
     """
     plan = compiled(scene)
     passes: dict[str, Any] = {}
@@ -44,9 +43,19 @@ def explain(scene: Scene, timed: bool = False) -> dict[str, Any]:
     }
 
 
-def compiled(scene: Scene) -> Plan:
-    """The plan of the scene's picture."""
-    return build(scene, samples_of(scene), is_solid(load_object(scene.object))).compile((PICTURE,))
+def compiled(scene: Scene, forced: frozenset[str] = NONE) -> Plan:
+    """The plan of the scene's picture, with the effects `forced` although they weigh nothing."""
+    return declared(scene, forced).compile((PICTURE,))
+
+
+def declared(scene: Scene, forced: frozenset[str] = NONE) -> FrameGraph:
+    """The graph of the scene's picture; reads the mesh, since the cheapest exact way depends on what it is."""
+    return build(scene, samples_of(scene), is_solid(load_object(scene.object)), forced)
+
+
+def savings(scene: Scene) -> list[dict[str, Any]]:
+    """What leaving out each effect that weighs nothing saves, measured; see `savings.measured`."""
+    return measured(scene, lambda forced: compiled(scene, forced))
 
 
 def described(verdict: Verdict) -> dict[str, Any]:
@@ -62,12 +71,13 @@ def described(verdict: Verdict) -> dict[str, Any]:
 
 
 def baked_entry(verdict: Verdict, scene: Scene, made: Made | None) -> dict[str, Any]:
-    """One baked input; only the occlusion has rays."""
+    """One baked input; `rays` a vertex where it casts any."""
+    rays = {"occlusion": scene.occlusion.rays, "local_thickness": scene.layers.rays}
     return {
         "name": verdict.node.name,
         "kept": verdict.kept,
         "because": verdict.because,
-        "rays": scene.occlusion.rays if verdict.node.name == "occlusion" else None,
+        "rays": rays.get(verdict.node.name),
         "seconds": made.seconds if made else None,
         "cached": made.cached or getattr(made.value, "cached", False) if made else None,
     }
@@ -75,11 +85,24 @@ def baked_entry(verdict: Verdict, scene: Scene, made: Made | None) -> dict[str, 
 
 def graph(scene: Scene) -> str:
     """Graphviz source of the scene's frame graph, culled nodes dashed."""
-    return build(scene, samples_of(scene)).to_dot(compiled(scene))
+    graph = declared(scene)
+    return graph.to_dot(graph.compile((PICTURE,)))
+
+
+def draw(scene: Scene, path: str, timed: bool = False) -> None:
+    """Write the drawing of the scene's frame graph to a .svg, .pdf or .png file, with GPU times if `timed`."""
+    from fakesss.graph_drawing import check_drawing, draw_graph  # loads matplotlib
+
+    check_drawing(path)
+    drawn = shared_renderer().render(scene, timed=True).passes if timed else []
+    draw_graph(compiled(scene), path, {entry["name"]: entry["gpu_ms"] for entry in drawn})
 
 
 def contact_sheet(scene: Scene) -> Float:
     """All of `fakesss.views` and the picture on one labelled sheet: (H, W, 3) linear RGB."""
+    from fakesss.contact_sheet import layered  # loads matplotlib
+    from fakesss.views import ROWS, views
+
     made = views(scene)
     sheet = layered([{name: made[name] for name in row} for row in ROWS])
     return decode_srgb(np.asarray(sheet) / 255.0)

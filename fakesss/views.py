@@ -23,6 +23,7 @@ Views = dict[str, Panel | Plot]
 Layers = Mapping[str, NDArray[Any]]
 
 LAYERS = ("front", "second", "thickness", "blurred_thickness", "surface")
+OCCLUSION = {"baked": "surface", "screen-space": "screen_occlusion"}  # where it lies; of the surface the last channel
 WITH_OCCLUSION = {"occlusion.enabled": True, "material.ambient": 1, "light.ambient": (1, 1, 1)}
 ROWS = (
     ("front", "second", "normals", "depth_gaps", "depth_precision"),
@@ -42,7 +43,8 @@ def views(scene: Scene) -> Views:
     A panel's `values` are data, (H, W) in the unit of its note, or 8-bit RGB (H, W, 3). All are made, whether or not
     the picture calls for them; `explain` tells which it does.
     """
-    layers = shared_renderer().data(scene.replace(WITH_OCCLUSION), LAYERS)
+    occlusion = OCCLUSION[scene.occlusion.method]
+    layers = shared_renderer().data(scene.replace(WITH_OCCLUSION), tuple(dict.fromkeys((*LAYERS, occlusion))))
     edges = hard_edges(layers["front"], layers["thickness"])
     made = depths(layers) | thicknesses(layers, scene, edges) | lights(layers, scene) | plots(layers, scene, edges)
     return {name: made[name] for row in ROWS for name in row}
@@ -96,7 +98,8 @@ def lights(layers: Layers, scene: Scene) -> Views:
     """The occlusion, every term of the lighting equation alone, and the picture that they add up to."""
     covered = layers["front"] > 0
     everywhere = np.ones_like(covered)
-    open_share = layers["surface"][..., 3]
+    found = layers[OCCLUSION[scene.occlusion.method]]
+    open_share = found if found.ndim == 2 else found[..., 3]
     image = shared_renderer().render(scene).image
     terms: Views = {}
     for name in TERMS:
