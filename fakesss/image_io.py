@@ -28,14 +28,18 @@ def check_output(path: str | Path) -> Path:
     return path
 
 
-def write_image(path: str | Path, linear: NDArray[Any]) -> Path:
-    """Write linear RGB (H, W, 3) or RGB and coverage (H, W, 4); PNG drops coverage, since RGB is the whole picture."""
+def write_image(path: str | Path, linear: NDArray[Any], alpha: bool = False) -> Path:
+    """Write linear RGB (H, W, 3), or RGB and coverage (H, W, 4).
+
+    RGB is the whole picture, so a PNG leaves coverage out; with `alpha` it is the picture times its coverage, and the
+    file keeps that as its alpha.
+    """
     path = check_output(path)
     try:
         if path.suffix.lower() == ".png":
-            path.write_bytes(encode_png(linear))
+            path.write_bytes(encode_png(linear, alpha))
         else:
-            write_exr(path, linear)
+            write_exr(path, linear, alpha)
     except (OSError, RuntimeError) as error:
         raise BadInput(f"{path}: cannot be written ({reason(error)}); choose a folder you may write to") from None
     return path
@@ -46,13 +50,28 @@ def reason(error: Exception) -> str:
     return (error.strerror if isinstance(error, OSError) else None) or str(error).splitlines()[0]
 
 
-def encode_png(linear: NDArray[Any]) -> bytes:
+def encode_png(linear: NDArray[Any], alpha: bool = False) -> bytes:
     """PNG bytes of linear RGB (H, W, 3 or 4): encoded to sRGB once, composited already, coverage left out.
+
+    With `alpha` of RGB times coverage, and coverage (H, W, 4): see `straight`.
 
     Beside the file itself it takes a few megabytes, whatever the picture's size.
     """
     height, width = linear.shape[:2]
+    if alpha:
+        return png.encode((width, height), (straight(rows) for rows in blocks(linear)), channels=4)
     return png.encode((width, height), (to_8bit(rows[..., :3]) for rows in blocks(linear)))
+
+
+def straight(premultiplied: NDArray[Any]) -> NDArray[np.uint8]:
+    """8-bit colour and alpha (H, W, 4) as PNG wants them: colour no longer multiplied by alpha, 0 where that is 0.
+
+    Alpha is a share and stays linear. Who composites has to decode the colour first: blended as code values, the
+    object's edges come out too dark or too light.
+    """
+    coverage = premultiplied[..., 3:]
+    colour = np.divide(premultiplied[..., :3], coverage, out=np.zeros_like(premultiplied[..., :3]), where=coverage > 0)
+    return np.concatenate([to_8bit(colour), np.floor(255 * coverage + 0.5).astype(np.uint8)], axis=2)
 
 
 def encode_png8(pixels: NDArray[np.uint8]) -> bytes:
@@ -67,11 +86,18 @@ def blocks(picture: NDArray[Any]) -> Iterator[NDArray[Any]]:
     return (picture[start : start + rows] for start in range(0, len(picture), rows))
 
 
-def write_exr(path: Path, linear: NDArray[Any]) -> None:
-    """OpenEXR, 32-bit float, ZIP. RGB is the picture over its background; A, where there is one, is coverage."""
+def write_exr(path: Path, linear: NDArray[Any], alpha: bool) -> None:
+    """OpenEXR, 32-bit float, ZIP.
+
+    Its readers take RGB for multiplied by A. Only with `alpha` is it; else RGB is the picture over its background, and
+    coverage stands in a channel of that name.
+    """
     import OpenEXR  # only for those who ask for it: it loads a large library
 
-    channels = {"RGBA" if linear.shape[2] == 4 else "RGB": np.ascontiguousarray(linear, dtype=np.float32)}
+    picture = np.ascontiguousarray(linear, dtype=np.float32)
+    channels = {"RGBA": picture} if alpha else {"RGB": np.ascontiguousarray(picture[..., :3])}
+    if picture.shape[2] == 4 and not alpha:
+        channels["coverage"] = np.ascontiguousarray(picture[..., 3])
     header = {"compression": OpenEXR.ZIP_COMPRESSION, "type": OpenEXR.scanlineimage}
     with OpenEXR.File(header, channels) as file:
         file.write(str(path))

@@ -29,15 +29,16 @@ CLIPPING_TOLD = 0.0005  # share of the object's pixels: the least that rounds to
 class Rendering:
     """One picture and what is to be said of it. What needs a look at every pixel is found when it is asked for."""
 
-    image: Float32  # (H, W, 4), top row first: linear RGB over the background, and coverage
+    image: Float32  # (H, W, 4), top row first: linear RGB over the background (`alpha`: over nothing), and coverage
     passes: list[dict[str, Any]]  # {"name", "gpu_ms"} in the order they ran; gpu_ms is None unless timed
     repairs: tuple[str, ...]  # of the mesh, one sentence each
     baked: dict[str, Made]
+    alpha: bool
 
     @cached_property
     def warnings(self) -> tuple[str, ...]:
         """One sentence each."""
-        return (*self.repairs, *picture_warnings(self.image))
+        return (*self.repairs, *picture_warnings(self.image, self.alpha))
 
     @cached_property
     def non_finite(self) -> int:
@@ -62,7 +63,7 @@ class Renderer:
         plan, outcome = self._run(scene, (PICTURE, "mesh"), samples_of(scene), timed, forced)
         image = np.ascontiguousarray(outcome.values[PICTURE][::-1])
         passes = [{"name": name, "gpu_ms": outcome.gpu_ms.get(name)} for name in plan.passes]
-        return Rendering(image, passes, tuple(outcome.values["mesh"].repairs), dict(outcome.baked))
+        return Rendering(image, passes, tuple(outcome.values["mesh"].repairs), dict(outcome.baked), scene.alpha)
 
     def data(self, scene: Scene, targets: tuple[str, ...], samples: int = 1) -> dict[str, Any]:
         """Resources by name, top row first: one sample at each pixel's centre, so data is never averaged.
@@ -108,14 +109,15 @@ def upright(value: Any) -> Any:
     return np.ascontiguousarray(value[::-1]) if isinstance(value, np.ndarray) and value.ndim > 1 else value
 
 
-def picture_warnings(image: Float32) -> tuple[str, ...]:
+def picture_warnings(image: Float32, alpha: bool) -> tuple[str, ...]:
     """What a researcher should know of a picture before showing it."""
     covered = image[..., 3] > 0
     pixels = np.count_nonzero(covered)
     if not pixels:
         return ("No pixel shows the object; check camera.distance, camera.near and camera.far.",)
     # channel by channel: numpy is slow along an axis of three
-    beyond_white = (image[..., 0] > 1) | (image[..., 1] > 1) | (image[..., 2] > 1)
+    white = image[..., 3] if alpha else 1
+    beyond_white = (image[..., 0] > white) | (image[..., 1] > white) | (image[..., 2] > white)
     clipped = np.count_nonzero(beyond_white & covered) / pixels
     if clipped < CLIPPING_TOLD:
         return ()
@@ -138,8 +140,9 @@ def render(scene: Scene, target: str = PICTURE) -> Any:
     """A picture of `scene`, or any resource of `explain` by name.
 
     `image`: (H, W, 4) float32, linear RGB composited over `scene.background`, so that showing RGB is the picture;
-    the fourth channel is coverage. Other targets: see `Renderer.data`. `thickness`: (H, W) float32 in sphere
-    diameters, 0 outside coverage, never NaN. Raises `BadInput` for an unknown name or anything a user can mend.
+    the fourth channel is coverage. With `scene.alpha` RGB is composited over nothing: colour times coverage. Other
+    targets: see `Renderer.data`. `thickness`: (H, W) float32 in sphere diameters, 0 outside coverage, never NaN.
+    Raises `BadInput` for an unknown name or anything a user can mend.
     """
     if target == PICTURE:
         return shared_renderer().render(scene).image
@@ -160,8 +163,8 @@ def render_file(scene: Scene, out: str | Path, views: bool = False) -> dict[str,
     if views:
         from fakesss.inspect import contact_sheet  # loads matplotlib
 
-        picture = contact_sheet(scene)
-    write_image(path, picture)
+        picture = contact_sheet(scene.replace({"alpha": False}))
+    write_image(path, picture, alpha=scene.alpha and not views)
     height, width = picture.shape[:2]
     return {
         "image": str(path),

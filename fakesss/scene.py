@@ -130,6 +130,9 @@ class Scene(Strict):
         "default", description="as published: the 2011 program's deterministic flaws (docs/technique.md)"
     )
     background: Albedo = Field((0.03, 0.03, 0.03), description="linear RGB behind the object, 0..1")
+    alpha: bool = Field(
+        False, description="true: the background is left out and the file keeps coverage as alpha, to lay over another"
+    )
     exposure: NonNegative = Field(0.9, description="factor on the object's radiance before display")
     supersampling: Annotated[int, Field(ge=1, le=8)] = Field(3, description="n: n x n samples a pixel, box filter")
     open_surface: Literal["thin", "thick"] = Field(

@@ -77,6 +77,7 @@ class Study(Strict):
         """The study in `folder/study.toml`, or `BadInput` in one sentence."""
         path = study_file(folder)
         study = validated(cls, read_toml(path), path.name)
+        check_opaque(study.scene, f"{path.name}: scene.alpha")
         for factor in study.factor:
             check_factor(factor, study.scene, path.name)
         return study
@@ -111,6 +112,12 @@ def study_sha256(folder: Path) -> str:
     return hashlib.sha256(study_file(folder).read_bytes()).hexdigest()
 
 
+def check_opaque(scene: Scene, where: str) -> None:
+    """`BadInput` naming the place if the picture would have no background of its own."""
+    if scene.alpha:
+        raise BadInput(f"{where}: a browser would show its page through the picture; set alpha = false")
+
+
 def check_factor(factor: Factor, base: Scene, source: str) -> None:
     """Every level of `factor` gives a valid scene, or `BadInput` naming factor, level and mend."""
     where = f'{source}: factor "{factor.name}"'
@@ -122,6 +129,7 @@ def check_factor(factor: Factor, base: Scene, source: str) -> None:
         except BadInput as error:
             mend = str(error).rsplit(": ", 1)[-1]
             raise BadInput(f"{where}: level {level!r}: {mend}") from None
+        check_opaque(base.replace({factor.path: level}), f"{where}: level {level!r}")
         if value in seen:
             raise BadInput(f"{where}: level {level!r} stands twice; remove one")
         seen.append(value)

@@ -14,7 +14,10 @@ SCREEN_OCCLUSION = ("screen_occlusion",)
 
 
 def shade(setting: Setting) -> Pass:
-    """Reads `front`, `surface` and one thickness; writes `shaded` (linear RGB over the background, 1 where covered)."""
+    """Reads `front`, `surface` and one thickness; writes `shaded` (linear RGB over the background, 1 where covered).
+
+    With `alpha` the background is black: what is added up for a pixel is then its colour times its coverage.
+    """
     unread = {**thickness_not_read(setting), **screen_occlusion_not_read(setting)}
     layer = tuple(name for name in THICKNESSES if name not in unread)
     occlusion = tuple(name for name in SCREEN_OCCLUSION if name not in unread)
@@ -35,7 +38,7 @@ def shade(setting: Setting) -> Pass:
         unread=unread,
         writes={"shaded": TextureSpec(setting.size, 4)},
         mask="coverage",
-        clear=(*setting.scene.background, 0.0),
+        clear=(0.0, 0.0, 0.0, 0.0) if setting.scene.alpha else (*setting.scene.background, 0.0),
         merges=THICKNESSES,
     )
 
