@@ -72,13 +72,14 @@ def explain(
     if out:
         inspect.draw(described, out, timed)
         say(f"{out}: the frame graph")
-    result = inspect.explain(described, timed)
+    plan = inspect.compiled(described)
+    result = inspect.document(plan, described, timed)
     if savings:
         result["savings"] = inspect.savings(described)
     if graph:
         done(result, as_json, inspect.graph(described))
         return
-    lines = [*explained(inspect.compiled(described), result), *saved(result.get("savings"))]
+    lines = [*explained(plan, result), *saved(result.get("savings"))]
     done(result, as_json, "\n".join(lines))
 
 

@@ -23,7 +23,11 @@ def explain(scene: Scene, timed: bool = False) -> dict[str, Any]:
 
     Needs no OpenGL unless `timed`; without it times and `cached` are None.
     """
-    plan = compiled(scene)
+    return document(compiled(scene), scene, timed)
+
+
+def document(plan: Plan, scene: Scene, timed: bool) -> dict[str, Any]:
+    """`explain` of a compiled scene."""
     passes: dict[str, Any] = {}
     baked: dict[str, Made] = {}
     if timed:

@@ -62,7 +62,8 @@ def styled(axes: Any) -> None:
     axes.tick_params(colors=rgb(FAINT), labelsize=8, length=0)
     axes.set_xlabel("across the picture, sphere diameters", **TYPE)
     axes.set_ylabel("sphere diameters", **TYPE)
-    axes.legend(loc="upper right", ncols=2, frameon=False, labelcolor=rgb(INK), fontsize=8, handlelength=1.4)
+    key = axes.legend(loc="upper right", ncols=2, labelcolor=rgb(INK), fontsize=8, handlelength=1.4)
+    key.get_frame().set(facecolor=rgb(EMPTY), edgecolor="none")
 
 
 def rgb(colour: tuple[int, int, int]) -> tuple[float, float, float]:

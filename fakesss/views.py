@@ -80,12 +80,13 @@ def thicknesses(layers: Layers, scene: Scene, edges: HardEdges) -> Views:
     covered, behind = layers["front"] > 0, layers["second"] > 0
     change = softened - exact
     most = max(float(np.percentile(np.abs(change[covered]), 99.5)), 1e-4) if covered.any() else 1.0
+    both = (0.0, max(float(exact.max()), 1e-6))  # one scale, so that the two can be compared
     middle = scene.size[1] // 2
     jumps = f"{edges.share:.2%} of pixels, {edges.length(pixel_width(scene)):.2f} diameters long"
     width = blur_width(layers["second"], scene)
     return {
-        "thickness": Panel("thickness", exact, covered, "sphere diameters", THICKNESS, line=middle),
-        "blurred_thickness": Panel("softened thickness", softened, covered, "sphere diameters", THICKNESS),
+        "thickness": Panel("thickness", exact, covered, "sphere diameters", THICKNESS, both, line=middle),
+        "blurred_thickness": Panel("softened thickness", softened, covered, "sphere diameters", THICKNESS, both),
         "softening": Panel("softened - exact", change, covered, "sphere diameters", SIGNED, (-most, most)),
         "blur_width": Panel("width of softening", width, behind, "sphere diameters, on the object", "viridis"),
         "hard_edges": Panel(

@@ -149,6 +149,21 @@ def test_the_step_of_a_rendered_block(renderer: Renderer, tmp_path: Path, side: 
     assert abs(found.pairs - top / to_face / view.tangent[1] * side) <= 2
 
 
+def length(renderer: Renderer, thickness: str, side: int) -> float:
+    """Of the hard edges of the built-in shell, sphere diameters."""
+    scene = Scene(object="shell", size=(side, side)).replace({"material.thickness": thickness})
+    layers = renderer.data(scene, ("front", "thickness"))
+    return hard_edges(layers["front"], layers["thickness"]).length(pixel_width(scene))
+
+
+@pytest.mark.gl
+def test_the_length_of_jumps_settles_and_that_of_slopes_vanishes(renderer: Renderer) -> None:
+    jumps = [length(renderer, "first-interval", side) for side in (512, 1024)]
+    slopes = [length(renderer, "bridged", side) for side in (512, 1024)]
+    assert jumps[0] > 1.5 and jumps[1] == pytest.approx(jumps[0], rel=0.1)
+    assert slopes[1] < 0.5 * slopes[0] < 0.25 * jumps[0]
+
+
 @pytest.mark.gl
 def test_sculptures_have_them_and_their_length_settles(renderer: Renderer) -> None:
     lengths, shares = [], []
