@@ -44,13 +44,13 @@ float hidden(vec3 point, vec3 middle, vec3 normal) {
     float depth = point.z - ORIGIN + distance;
     vec2 place = 0.5 + 0.5 * point.xy / (tangent * depth);
     if (depth <= 0.0 || place != clamp(place, 0.0, 1.0)) return 0.0;
-    ivec2 texel = min(ivec2(place * vec2(textureSize(front, 0))), textureSize(front, 0) - 1);
-    float layer = texelFetch(front, texel, 0).r;
+    vec2 size = vec2(textureSize(front, 0));
+    vec2 centre = (min(floor(place * size), size - 1.0) + 0.5) / size;  // of the texel
+    float layer = texture(front, centre).r;  // cheaper than texelFetch on a software rasteriser
     if (is_empty(layer) || point.z <= layer + bias) return 0.0;
     // What lies under the surface's own plane is no part of the hemisphere: flat and convex surfaces stay open however
     // coarse the texels are.
-    vec3 occluder = unprojected((vec2(texel) + 0.5) / vec2(textureSize(front, 0)), layer);
-    float height = dot(occluder - middle, normal);
+    float height = dot(unprojected(centre, layer) - middle, normal);
     return height > bias ? clamp(2.0 - (middle.z - layer) / radius, 0.0, 1.0) : 0.0;
 }
 

@@ -11,16 +11,16 @@ const float EDGE[3] = float[](1.0, 1.0, 0.5);
 out float screen_occlusion;
 
 void main() {
-    ivec2 here = ivec2(gl_FragCoord.xy), last = textureSize(front, 0) - 1;
-    float centre = texelFetch(front, here, 0).r;
+    vec2 texel = 1.0 / vec2(textureSize(front, 0));
+    float centre = texelFetch(front, ivec2(gl_FragCoord.xy), 0).r;
     float sum = 0.0, weights = 0.0;
     for (int y = -2; y <= 2; ++y)
         for (int x = -2; x <= 2; ++x) {
-            ivec2 tap = clamp(here + ivec2(x, y), ivec2(0), last);
-            float layer = texelFetch(front, tap, 0).r;
+            vec2 tap = (gl_FragCoord.xy + vec2(x, y)) * texel;
+            float layer = texture(front, tap).r;
             float gap = clamp(abs(layer - centre) / depth_range, 0.0, 1.0);
             float weight = is_empty(layer) ? 0.0 : EDGE[abs(x)] * EDGE[abs(y)] * (1.0 - gap);
-            sum += weight * texelFetch(sampled_occlusion, tap, 0).r;
+            sum += weight * texture(sampled_occlusion, tap).r;
             weights += weight;
         }
     screen_occlusion = sum / weights;  // the tap in the middle counts 1
