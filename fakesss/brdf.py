@@ -5,8 +5,6 @@ quantity, conserves no energy and knows nothing of scattering; it brightens what
 Arrays broadcast; cosines and thicknesses are pure numbers.
 """
 
-from typing import Any
-
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
@@ -33,18 +31,3 @@ def blinn_phong(n_dot_l: ArrayLike, n_dot_h: ArrayLike, shininess: ArrayLike) ->
 def backlight(thickness: ArrayLike, exponent: ArrayLike) -> Array:
     """(1 - t)^r, eq. 3.10, with t held to 0..1."""
     return power(1.0 - np.clip(np.asarray(thickness, float), 0.0, 1.0), exponent)
-
-
-def lighting(material: Any, light: Any, a: Array, n_dot_l: Array, n_dot_h: Array, t: Array) -> Array:
-    """Equation 3.6: linear RGB (..., 3) of samples with occlusion `a`, the two cosines and thickness `t`.
-
-    `material` and `light` are the scene's `Material` and `Light`.
-    """
-    m, diffuse = material, np.array(material.diffuse)
-    ambient_term = np.multiply.outer(a, m.ambient * diffuse * np.array(light.ambient))
-    diffuse_term = np.multiply.outer(lambert(n_dot_l), m.diffuse_contribution * diffuse * np.array(light.diffuse))
-    highlight = m.specular_contribution * m.specular * np.array(light.specular)
-    specular_term = np.multiply.outer(blinn_phong(n_dot_l, n_dot_h, m.shininess), highlight)
-    through = m.backlight * (diffuse + m.diffuse_weight)
-    backlight_term = np.multiply.outer(backlight(t, m.thickness_exponent), through)
-    return np.asarray(ambient_term + diffuse_term + specular_term + backlight_term)

@@ -68,10 +68,19 @@ def no_specular(scene: Scene) -> str:
     )
 
 
-def no_direct_light(scene: Scene) -> str:
+def shining(scene: Scene) -> tuple[Light, ...]:
+    """The lights that add a diffuse or specular term."""
+    terms = [term for term, reason in (("diffuse", no_diffuse), ("specular", no_specular)) if not reason(scene)]
+    return tuple(light for light in lights_of(scene) if any(any(getattr(light, term)) for term in terms))
+
+
+def no_shadow(scene: Scene) -> str:
     """Nothing that a shadow could dim."""
     diffuse, specular = no_diffuse(scene), no_specular(scene)
-    return when(bool(diffuse and specular), f"{diffuse} and {specular}")
+    if diffuse and specular:
+        return f"{diffuse} and {specular}"
+    dark = any(light.shadows for light in lights_of(scene)) and not any(light.shadows for light in shining(scene))
+    return when(dark, "no light with shadows = true shines")
 
 
 def no_caster(scene: Scene) -> str:
@@ -92,7 +101,7 @@ EFFECTS: Mapping[str, Effect] = {
     "occlusion": Effect(weightless=no_ambient, off=occlusion_off),
     "diffuse": Effect(weightless=no_diffuse),
     "specular": Effect(weightless=no_specular),
-    "shadows": Effect(weightless=no_direct_light, off=no_caster),
+    "shadows": Effect(weightless=no_shadow, off=no_caster),
 }
 
 
@@ -121,3 +130,14 @@ class Setting:
         """Why `effect` is not simulated, or "" if it is."""
         known = EFFECTS[effect]
         return known.off(self.scene) or ("" if effect in self.forced else known.weightless(self.scene))
+
+    @property
+    def shining(self) -> tuple[Light, ...]:
+        """The lights whose diffuse and specular terms are computed: those that shine, unless these are forced."""
+        in_vain = self.forced & {"diffuse", "specular", "shadows"}
+        return lights_of(self.scene) if in_vain else shining(self.scene)
+
+    @property
+    def casting(self) -> tuple[Light, ...]:
+        """The lights with a shadow map."""
+        return () if self.lacking("shadows") else tuple(light for light in self.shining if light.shadows)

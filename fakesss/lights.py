@@ -31,11 +31,12 @@ class Light(Strict):
     diffuse: Intensity = Field((1.0, 1.0, 1.0), description="diffuse intensity [Id], linear RGB")
     specular: Intensity = Field((1.0, 1.0, 1.0), description="specular intensity [Is], linear RGB")
     attenuation: Attenuation = Field(
-        (1.0, 0.0, 0.0), description="kc, kl, kq of a point or spot light: 1 / (kc + kl d + kq d^2), d in sphere radii"
+        (1.0, 0.0, 0.0), description="[kc, kl, kq] of a point or spot light: 1 / (kc + kl d + kq d^2), d in radii"
     )
     cutoff: Annotated[float, Field(ge=0.1, le=90)] = Field(20.0, description="half angle of a spot's cone, degrees")
     falloff: Literal["exponent", "linear"] = Field(
-        "exponent", description="exponent: cos^e of the angle from a spot's axis; linear: (c - cf) / (1 - cf)"
+        "exponent",
+        description="from a spot's axis; exponent: cos^e; linear: (c - cf) / (1 - cf), cf the cut-off's cosine",
     )
     spot_exponent: Annotated[float, Field(ge=0, le=1e4)] = Field(1.0, description="e of a spot's exponent fall-off")
     shadows: bool = Field(False, description="true: the object hides this light from itself (shadow map)")

@@ -17,6 +17,7 @@ from fakesss.passes.resolve import image, resolve
 from fakesss.passes.screen_occlusion import sample_occlusion, screen_occlusion
 from fakesss.passes.second import first_exit, second
 from fakesss.passes.shade import shade
+from fakesss.passes.shadow import shadow
 from fakesss.passes.thickness import thickness
 from fakesss.passes.total_path import path_exit, total_path
 from fakesss.scene import Scene
@@ -52,6 +53,7 @@ def build(scene: Scene, samples: int = 1, solid: bool = False, forced: frozenset
             blur(setting),
             sample_occlusion(setting),
             screen_occlusion(setting),
+            shadow(setting),
             shade(setting),
             resolve(setting),
             image(setting),

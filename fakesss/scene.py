@@ -7,6 +7,7 @@ Symbols in brackets are those of equation 3.6 in Gascons, *Fast simulation of tr
 
 import hashlib
 import json
+import re
 import tomllib
 from collections.abc import Iterator, Mapping
 from pathlib import Path
@@ -106,7 +107,6 @@ class Layers(Strict):
     faces: Annotated[int, Field(ge=4)] | None = Field(
         None, description="APPROXIMATE second layer from about so many faces; empty: all of them, exact"
     )
-    reduction: Literal[1, 2] = Field(1, description="2: APPROXIMATE second layer at half the picture's resolution")
 
 
 class Blur(Strict):
@@ -169,18 +169,18 @@ class Scene(Strict):
         """A copy with `{"material.backlight": 0.8}` applied and checked again."""
         data = self.model_dump()
         for path, value in changes.items():
-            *parents, leaf = check_path(path, source).split(".")
-            place = data
+            *parents, leaf = check_path(path, source, self).split(".")
+            place: Any = data
             for parent in parents:
-                place = place[parent]
+                place = place[int(parent) if parent.isdecimal() else parent]
             place[leaf] = value
         return self.from_dict(data, source)
 
     def at(self, path: str) -> Any:
-        """The value of the field at `path`, for example `material.backlight`."""
+        """The value of the field at `path`, for example `material.backlight` or `lights.0.diffuse`."""
         value: Any = self
         for part in path.split("."):
-            value = getattr(value, part)
+            value = value[int(part)] if part.isdecimal() else getattr(value, part)
         return value
 
     def sha256(self) -> str:
@@ -210,9 +210,18 @@ def scene_paths(model: type[BaseModel] = Scene, prefix: str = "") -> Iterator[st
             yield f"{prefix}{name}"
 
 
-def check_path(path: str, source: str) -> str:
-    """`path` if it is a scene field, otherwise `BadInput` with the nearest valid one."""
-    known = list(scene_paths())
-    if path not in known:
-        raise BadInput(f'{source}: path "{path}" is no scene field; {nearest(path, known)}')
-    return path
+def light_paths(number: int) -> Iterator[str]:
+    """The paths of the fields of `number` further lights: `lights.0.azimuth`, ..."""
+    for index in range(number):
+        yield from scene_paths(Light, f"lights.{index}.")
+
+
+def check_path(path: str, source: str, scene: Scene) -> str:
+    """`path` if it is a field of `scene`, otherwise `BadInput` with the nearest valid one."""
+    known = [*scene_paths(), *light_paths(len(scene.lights))]
+    if path in known:
+        return path
+    if re.match(r"lights\.\d+(\.|$)", path) and int(path.split(".")[1]) >= len(scene.lights):
+        has = f"has {len(scene.lights)} of them" if scene.lights else "has none"
+        raise BadInput(f'{source}: path "{path}": counts from lights.0, and the scene {has}; add a [[lights]] table')
+    raise BadInput(f'{source}: path "{path}" is no scene field; {nearest(path, known)}')

@@ -4,10 +4,11 @@ from typing import Any
 
 import numpy as np
 
-from fakesss.calls import Setting
-from fakesss.camera import direction
+from fakesss.calls import Setting, lights_of
 from fakesss.frame import Frame
 from fakesss.frame_graph import Pass, TextureSpec
+from fakesss.passes import shadow
+from fakesss.passes.lights import light_defines, light_uniforms
 
 THICKNESSES = ("thickness", "blurred_thickness")
 SCREEN_OCCLUSION = ("screen_occlusion",)
@@ -18,29 +19,41 @@ def shade(setting: Setting) -> Pass:
 
     With `alpha` the background is black: what is added up for a pixel is then its colour times its coverage.
     """
-    unread = {**thickness_not_read(setting), **screen_occlusion_not_read(setting)}
-    layer = tuple(name for name in THICKNESSES if name not in unread)
-    occlusion = tuple(name for name in SCREEN_OCCLUSION if name not in unread)
-    specular = not setting.lacking("specular")
+    unread = {**thickness_not_read(setting), **screen_occlusion_not_read(setting), **shadow.not_read(setting)}
+    layer = tuple(name for name in (*SCREEN_OCCLUSION, *THICKNESSES, "shadow_maps") if name not in unread)
+    where = needs_position(setting)
     constants = {
         **surface_uniforms(setting),
-        **(specular_uniforms(setting) if specular else {}),
-        **(backlight_uniforms(setting) if layer else {}),
+        **(light_uniforms(setting) if setting.shining else {}),
+        **(shadow.shadow_uniforms(setting) if setting.casting else {}),
+        **({"tangent": setting.view.tangent} if where or not setting.lacking("specular") else {}),
+        **({"camera_distance": setting.view.distance} if where else {}),
+        **({} if setting.lacking("backlight") else backlight_uniforms(setting)),
+    }
+    defines = {
+        **light_defines(setting),
+        **(shadow.shadow_defines(setting) if setting.casting else {}),
+        "NEEDS_POSITION": int(where),
     }
 
     def draw(frame: Frame) -> None:
-        frame.fill("shade.frag", constants, HIGHLIGHT=int(specular))
+        frame.fill("shade.frag", constants, **defines)
 
     return Pass(
         "shade",
         draw,
-        reads=("surface", "coverage", *occlusion, *layer),
+        reads=("surface", "coverage", *(("front",) if where else ()), *layer),
         unread=unread,
         writes={"shaded": TextureSpec(setting.size, 4)},
         mask="coverage",
         clear=(0.0, 0.0, 0.0, 0.0) if setting.scene.alpha else (*setting.scene.background, 0.0),
         merges=THICKNESSES,
     )
+
+
+def needs_position(setting: Setting) -> bool:
+    """Whether it matters where in space a sample lies: to a light that has a place, or casts shadows."""
+    return bool(setting.casting) or any(light.kind != "directional" for light in setting.shining)
 
 
 def thickness_not_read(setting: Setting) -> dict[str, str]:
@@ -60,24 +73,12 @@ def screen_occlusion_not_read(setting: Setting) -> dict[str, str]:
 
 
 def surface_uniforms(setting: Setting) -> dict[str, Any]:
-    """What the ambient and diffuse terms need, as eq. 3.7 and 3.8 multiply it out."""
-    material, light = setting.scene.material, setting.scene.light
-    reflectance = np.array(material.diffuse)
+    """What the ambient term needs, as eq. 3.7 multiplies it out; the lights' ambient intensities add up."""
+    material = setting.scene.material
+    intensity = np.sum([light.ambient for light in lights_of(setting.scene)], axis=0)
     return {
-        "to_light": tuple(setting.view.rotation @ direction(light.azimuth, light.elevation)),
-        "ambient_colour": tuple(material.ambient * reflectance * light.ambient),
-        "diffuse_colour": tuple(material.diffuse_contribution * reflectance * light.diffuse),
+        "ambient_colour": tuple(material.ambient * np.array(material.diffuse) * intensity),
         "exposure": setting.scene.exposure,
-    }
-
-
-def specular_uniforms(setting: Setting) -> dict[str, Any]:
-    """What the highlight needs (eq. 3.9)."""
-    material, light = setting.scene.material, setting.scene.light
-    return {
-        "tangent": setting.view.tangent,
-        "specular_colour": tuple(material.specular_contribution * material.specular * np.array(light.specular)),
-        "shininess": material.shininess,
     }
 
 

@@ -9,8 +9,8 @@ import pytest
 from numpy.typing import NDArray
 from picture_scenes import dark
 
-from fakesss import brdf
-from fakesss.camera import View, direction
+from fakesss import illumination
+from fakesss.camera import View
 from fakesss.colour import decode_srgb, to_8bit
 from fakesss.renderer import Renderer
 from fakesss.scene import Scene
@@ -36,21 +36,6 @@ def test_occlusion_scales_the_ambient_term(renderer: Renderer) -> None:
     assert surface[..., 3][image[..., 3] > 0].min() < 0.9
 
 
-def cosines(scene: Scene, surface: NDArray[Any]) -> tuple[NDArray[Any], NDArray[Any]]:
-    """N.L and N.H per pixel, from the drawn normals, in float64."""
-    view = View.of(scene.camera, scene.size)
-    width, height = scene.size
-    x = ((np.arange(width) + 0.5) / width * 2 - 1) * view.tangent[0]
-    y = (1 - (np.arange(height) + 0.5) / height * 2) * view.tangent[1]
-    to_viewer = np.stack([*np.meshgrid(-x, -y), np.ones((height, width))], axis=-1)
-    to_viewer /= np.linalg.norm(to_viewer, axis=-1, keepdims=True)
-    to_light = view.rotation @ direction(scene.light.azimuth, scene.light.elevation)
-    halfway = to_viewer + to_light
-    halfway /= np.linalg.norm(halfway, axis=-1, keepdims=True)
-    normal = surface[..., :3].astype(np.float64)
-    return normal @ to_light, (normal * halfway).sum(axis=-1)
-
-
 @pytest.mark.parametrize(
     "changes",
     [
@@ -68,8 +53,11 @@ def test_picture_is_equation_3_6(renderer: Renderer, changes: dict[str, Any], li
     scene = dark(**changes, light__azimuth=light[0], light__elevation=light[1], object="torus:8000")
     layer = "blurred_thickness" if scene.blur.enabled else "thickness"
     data = renderer.data(scene, ("surface", layer, "front"))
-    n_dot_l, n_dot_h = cosines(scene, data["surface"])
-    expected = brdf.lighting(scene.material, scene.light, data["surface"][..., 3], n_dot_l, n_dot_h, data[layer])
+    view = View.of(scene.camera, scene.size)
+    points = illumination.positions(view, data["front"])
+    normals, occlusion = data["surface"][..., :3].astype(np.float64), data["surface"][..., 3]
+    expected = illumination.lighting(scene, view, points, normals, occlusion, data[layer])
+    n_dot_l = (normals * illumination.arriving(scene.light, view, points)[0]).sum(axis=-1)
     image = renderer.render(scene).image
     sure = (data["front"] > 0) & (np.abs(n_dot_l) > 1e-6)  # at N.L = 0 the highlight's edge may round either way
     np.testing.assert_allclose(image[sure][:, :3], expected[sure], rtol=3e-5, atol=1e-6)

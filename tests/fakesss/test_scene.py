@@ -46,8 +46,8 @@ def test_what_is_wrong_is_named(tmp_path: Path, text: str, sentence: str) -> Non
 
 def test_an_unknown_path_gets_its_nearest() -> None:
     with pytest.raises(BadInput, match=r'did you mean "material.backlight"\?'):
-        check_path("material.backlite", "study.toml")
-    assert check_path("blur.step", "study.toml") == "blur.step"
+        check_path("material.backlite", "study.toml", Scene())
+    assert check_path("blur.step", "study.toml", Scene()) == "blur.step"
 
 
 def test_every_path_can_be_replaced_by_its_own_value() -> None:

@@ -1,0 +1,73 @@
+"""What every light that casts shadows sees of the object, all maps in one texture."""
+
+from typing import Any
+
+from fakesss.calls import Setting
+from fakesss.frame import Frame
+from fakesss.frame_graph import Pass, TextureSpec
+from fakesss.passes.geometry import Cull, draw_mesh
+from fakesss.passes.lights import array
+from fakesss.shadow_maps import Atlas, atlas, map_views
+
+NOTHING = 1e9  # depth where a light sees nothing of the object, sphere radii: behind everything
+FILTERS = {"hard": 0, "pcf": 1, "disc": 2}
+
+
+def layout_of(setting: Setting) -> Atlas:
+    """Where the maps stand."""
+    return atlas(setting.casting, setting.scene.shadow.map_size, setting.scene.size)
+
+
+def shadow(setting: Setting) -> Pass:
+    """Reads `mesh`; writes `shadow_maps` (linear depth from each light, see shadow_maps.py).
+
+    Of a solid only back faces are drawn: what lies in front of a lit surface has one, and the surface itself is not in
+    its own way. In an open mesh any face may be all there is.
+    """
+    casting, layout = setting.casting, layout_of(setting)
+    cull: Cull = "front" if setting.solid else ""
+
+    def draw(frame: Frame) -> None:
+        maps = [seen for light in casting for seen in map_views(light, setting.view)]
+        for number, seen in enumerate(maps):
+            frame.target.viewport = (*layout.corner(number), layout.side, layout.side)
+            program = frame.program("shadow.vert", "shadow.frag", seen.uniforms, {})
+            draw_mesh(frame, frame.inputs["mesh"], setting.view, program, [], cull)
+        frame.target.viewport = (0, 0, *layout.size)  # the target is used again
+
+    return Pass(
+        "shadow",
+        draw,
+        reads=("mesh",),
+        writes={"shadow_maps": TextureSpec(layout.size, 1)},
+        depth_test=True,
+        clear=(NOTHING, 0.0, 0.0, 0.0),
+    )
+
+
+def not_read(setting: Setting) -> dict[str, str]:
+    """Why the lights need no shadow maps, or nothing if they do."""
+    lacking = setting.lacking("shadows")
+    return {"shadow_maps": lacking} if lacking else {}
+
+
+def shadow_uniforms(setting: Setting) -> dict[str, Any]:
+    """Those of `glsl/common_shadow.glsl`."""
+    settings, layout = setting.scene.shadow, layout_of(setting)
+    turns, maps, cubes, first = [], [], [], 0
+    for light in setting.shining:
+        seen = map_views(light, setting.view)
+        turns.append(tuple(seen[0].turn.T.ravel()))
+        maps.append((first if light in setting.casting else -1, *seen[0].width, seen[0].half_width))
+        cubes.append(seen[0].centre[2] if len(seen) > 1 else -1.0)
+        first += len(seen) if light.shadows else 0
+    disc = {"shadow_radius": 2 * settings.radius} if settings.filter == "disc" else {}
+    arrays = {"shadow_turn": array(turns), "shadow_map": array(maps), "shadow_cube": array(cubes)}
+    return {**arrays, "map_side": layout.side, "shadow_bias": 2 * settings.bias, **disc}
+
+
+def shadow_defines(setting: Setting) -> dict[str, int]:
+    """The permutation that reads the maps."""
+    filtering = FILTERS[setting.scene.shadow.filter]
+    samples = {"SHADOW_SAMPLES": setting.scene.shadow.samples} if filtering == FILTERS["disc"] else {}
+    return {"SHADOW_LIGHTS": len(setting.shining), "SHADOW_FILTER": filtering, **samples}
