@@ -6,6 +6,8 @@ from pathlib import Path
 from PIL import Image, ImageDraw, ImageFont
 
 from fakesss.colour import to_8bit
+from fakesss.graph_drawing import draw_graph
+from fakesss.inspect import compiled, contact_sheet
 from fakesss.renderer import render
 from fakesss.scene import Scene
 from fakesss.shapes import names
@@ -50,6 +52,13 @@ def objects(edge: int = 300) -> Image.Image:
     return sheet([(name, Image.fromarray(to_8bit(image[..., :3]))) for name, image in drawn], 3)
 
 
+def views(width: int = 1290) -> Image.Image:
+    """The contact sheet of the shell, whose inner wall shows as hard edges."""
+    drawn = Image.fromarray(to_8bit(contact_sheet(Scene(object="shell"))))
+    return drawn.resize((width, round(width * drawn.height / drawn.width)), Image.Resampling.LANCZOS)
+
+
 if __name__ == "__main__":
-    for name, page in (("thesis-stimuli", thesis_stimuli()), ("objects", objects())):
+    for name, page in (("thesis-stimuli", thesis_stimuli()), ("objects", objects()), ("views", views())):
         page.save(HERE / f"{name}.png", optimize=True)
+    draw_graph(compiled(Scene().replace({"light.ambient": (0, 0, 0)})), HERE / "graph.svg")
