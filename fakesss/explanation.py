@@ -67,7 +67,7 @@ def saved(savings: Sequence[Mapping[str, Any]] | None) -> Iterator[str]:
     if not savings:
         yield "  nothing: no effect of this scene weighs zero"
     for row in savings:
-        time = f"{row['forced_ms'] - row['ms']:.1f} of {row['forced_ms']:.1f} ms"
+        time = f"{row['saved_ms']:.1f} ± {row['noise_ms']:.1f} of {row['forced_ms']:.1f} ms"
         memory = f"{(row['forced_bytes'] - row['bytes']) / MEGABYTE:.1f} of {row['forced_bytes'] / MEGABYTE:.1f} MB"
         baked = f", {row['bake_seconds']:.2f} s of baking once" if row["bake_seconds"] else ""
         same = "no byte of the picture changes" if row["same_bytes"] else "THE PICTURE CHANGES"

@@ -33,8 +33,10 @@ def in_vain(scene: Scene) -> dict[frozenset[str], str]:
 def measured(scene: Scene, plan_with: Callable[[frozenset[str]], Plan], repeats: int = REPEATS) -> list[dict[str, Any]]:
     """One row for every group of `in_vain`; `plan_with` compiles the picture with effects forced on.
 
-    Milliseconds are medians of the whole picture, from the call to its pixels, both kinds drawn in turn; the first of
-    each is not counted. Bytes are of textures. `bake_seconds` is what only the forced picture bakes, without any cache.
+    Milliseconds are of the whole picture, from the call to its pixels, both kinds drawn in turn, the first of each not
+    counted: `forced_ms` and `saved_ms` are the medians of the forced ones and of the differences in a turn, `noise_ms`
+    is the median distance of those differences from their median. Bytes are of textures. `bake_seconds` is what only
+    the forced picture bakes, without any cache.
     """
     renderer = shared_renderer()
     plan = plan_with(NONE)
@@ -94,8 +96,10 @@ def compared(renderer: Renderer, scene: Scene, effects: frozenset[str], repeats:
             start = time.perf_counter()
             renderer.render(scene, forced=kind)
             taken.append(1e3 * (time.perf_counter() - start))
+    saved = [slow - fast for fast, slow in zip(times[NONE], times[effects], strict=True)]
     return {
-        "ms": statistics.median(times[NONE]),
         "forced_ms": statistics.median(times[effects]),
+        "saved_ms": statistics.median(saved),
+        "noise_ms": statistics.median(abs(one - statistics.median(saved)) for one in saved),
         "same_bytes": without.image.tobytes() == forced.image.tobytes(),
     }

@@ -1,12 +1,17 @@
 import json
+from pathlib import Path
 from typing import Any
 
 import pytest
+from click.testing import CliRunner
 
+import fakesss.cli_picture  # noqa: F401  (adds its commands)
+from fakesss.cli import commands
 from fakesss.explanation import explained, saved
 from fakesss.gpu import Gpu
 from fakesss.inspect import compiled, explain
 from fakesss.memory import peak_bytes
+from fakesss.problem import BadInput
 from fakesss.scene import Scene
 
 
@@ -44,11 +49,31 @@ def test_times_are_said_where_they_were_measured(gpu: Gpu) -> None:
 
 
 def test_savings_in_words() -> None:
-    row = {"effects": ["backlight", "blur"], "because": "material.backlight is 0", "ms": 61.0, "forced_ms": 98.0}
+    row = {"effects": ["backlight", "blur"], "because": "material.backlight is 0", "forced_ms": 98.0}
+    row |= {"saved_ms": 37.0, "noise_ms": 1.24}
     row |= {"bytes": 98_000_000, "forced_bytes": 117_000_000, "bake_seconds": 0.0, "same_bytes": True}
     lines = list(saved([json.loads(json.dumps(row))]))
     assert lines[1] == "  backlight, blur: material.backlight is 0"
-    assert lines[2].strip() == "37.0 of 98.0 ms, 19.0 of 117.0 MB; no byte of the picture changes"
+    assert lines[2].strip() == "37.0 ± 1.2 of 98.0 ms, 19.0 of 117.0 MB; no byte of the picture changes"
     assert "THE PICTURE CHANGES" in list(saved([{**row, "same_bytes": False}]))[2]
     assert "2.00 s of baking once" in list(saved([{**row, "bake_seconds": 2.0}]))[2]
     assert list(saved(None)) == [] and "nothing" in list(saved([]))[1]
+
+
+def test_the_command_prints_draws_and_refuses(tmp_path: Path) -> None:
+    drawing = tmp_path / "graph.svg"
+    done = CliRunner().invoke(commands, ["explain", "torus:4000", "-o", str(drawing)])
+    assert done.exit_code == 0 and done.stdout.startswith("KEPT  ") and drawing.is_file()
+    assert "SAVED" not in done.stdout
+    source = CliRunner().invoke(commands, ["explain", "torus:4000", "--graph"])
+    assert source.stdout.startswith("digraph frame {")
+    refused = CliRunner().invoke(commands, ["explain", "torus:4000", "-o", "graph.gif"])
+    assert isinstance(refused.exception, BadInput)
+
+
+@pytest.mark.gl
+def test_savings_are_in_the_document(gpu: Gpu) -> None:
+    asked = ["explain", "torus:4000", "--size", "16x16", "--set", "material.backlight=0", "--savings", "--json"]
+    document = json.loads(CliRunner().invoke(commands, asked).stdout)
+    assert document.keys() == {"passes", "baked", "savings"}
+    assert [row["effects"] for row in document["savings"]] == [["backlight", "blur"]]

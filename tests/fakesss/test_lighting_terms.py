@@ -13,6 +13,7 @@ SCENE = Scene(object="knot:4000", size=(48, 40), background=(0.0, 0.0, 0.0))
 CHANGES: list[dict[str, Any]] = [
     {},
     {"material.ambient": 0.0, "blur.enabled": False},
+    {"lights": [{"kind": "point", "azimuth": 80.0}, {"kind": "spot", "elevation": -10.0, "shadows": True}]},
     {"material.backlight": -0.7, "material.specular_contribution": 3.0, "light.azimuth": 120.0},
 ]
 

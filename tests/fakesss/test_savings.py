@@ -39,7 +39,8 @@ def test_every_saving_leaves_the_picture_as_it_is(gpu: Gpu) -> None:
     rows = {row["effects"][0]: row for row in savings(Scene(object="torus:4000", size=(64, 48)).replace(changes))}
     assert rows.keys() == {"backlight", "occlusion", "specular"}
     for row in rows.values():
-        assert row["same_bytes"] and row["ms"] > 0 and row["forced_ms"] > 0 and row["forced_bytes"] >= row["bytes"] > 0
+        assert row["same_bytes"] and row["forced_bytes"] >= row["bytes"] > 0
+        assert row["forced_ms"] > row["saved_ms"] and row["noise_ms"] >= 0
     assert rows["backlight"]["forced_bytes"] > rows["backlight"]["bytes"]
     assert rows["occlusion"]["bake_seconds"] > 0 and rows["backlight"]["bake_seconds"] == 0
 
