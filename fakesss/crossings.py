@@ -30,7 +30,8 @@ class Crossings:
         Origins and unit directions are (N, 3). Distances are in sphere radii, NaN where nothing more is hit. A side is
         -1 where the ray meets a front face, 1 where it meets a back face, else 0.
         """
-        distances, sides = [], []
+        distances: list[Floats] = []
+        sides: list[NDArray[np.int8]] = []
         start, going = np.zeros(len(origins)), np.arange(len(origins))
         while len(going) and len(distances) < MOST:
             begin, along = origins[going] + start[going, None] * directions[going], directions[going]

@@ -101,13 +101,14 @@ class Run:
     baked: dict[str, Made] = field(default_factory=dict)
     queries: dict[str, Any] = field(default_factory=dict)
 
-    def __call__(self) -> Outcome:
+    def __call__(self, read: bool = True) -> Outcome:
+        """Make every kept node; `read`: wait for the targets and read them back."""
         try:
             for node in self.plan.kept:
                 self._make(node)
                 for resource in self.plan.dead_after[node.name]:
                     self._give_back(resource)
-            values = {name: self._value(name) for name in self.plan.targets}
+            values = {name: self._value(name) for name in self.plan.targets} if read else {}
             gpu_ms = {name: query.elapsed / 1e6 for name, query in self.queries.items()}
             return Outcome(values, self.baked, gpu_ms)
         finally:
@@ -155,7 +156,7 @@ class Run:
         try:
             with scope:
                 target.depth_mask = not node.mask
-                target.clear(*node.clear)
+                self._clear(node, target)
                 # a mask keeps the full-screen triangle, which lies on the far plane, to where something is nearer
                 context.depth_func = ">" if node.mask else "<"
                 context.blend_func = moderngl.ONE, moderngl.ONE
@@ -163,6 +164,17 @@ class Run:
         finally:
             context.depth_func = "<"
             scope.release()  # or half a kilobyte a pass would stay for good
+
+    def _clear(self, node: Pass, target: Any) -> None:
+        """Clearing a texture costs as much as drawing it: what nobody will see of it is left as it is."""
+        colours = [name for name, spec in node.writes.items() if spec.components != DEPTH]
+        needed = [name not in node.read_masked or name in map(self.plan.root, self.plan.targets) for name in colours]
+        if all(needed):
+            target.clear(*node.clear)
+            return
+        target.color_mask = tuple((need,) * 4 for need in needed)
+        target.clear(*node.clear)
+        target.color_mask = ((True,) * 4,) * len(needed)
 
     def _give_back(self, resource: str) -> None:
         value = self.live.pop(resource)

@@ -30,13 +30,14 @@ class TextureSpec:
         return self.size[0] * self.size[1] * 4 * max(self.components, 1)
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Pass:
     """One node that draws: `draw(frame)` fills the textures named in `writes` and sees only what it declared.
 
     `unread` tells, for inputs that this pass could read but this scene does not call for, the reason in words;
     `only_for` names the output without which an input is not needed.
-    Textures are set to `clear` before `draw`. `depth_test` attaches an emptied depth buffer, one of `writes` if that
+    Textures are set to `clear` before `draw`, but those of `read_masked`, which nothing reads where the object is not,
+    only if they are asked for. `depth_test` attaches an emptied depth buffer, one of `writes` if that
     names one. `mask` names a depth buffer among `reads`: only samples that it covers are drawn. `add` sums what is
     drawn instead of keeping the last.
     `in_place`: the uniforms and defines of a full-screen pass whose reader can compute its output itself, given the
@@ -52,13 +53,14 @@ class Pass:
     depth_test: bool = False
     mask: str = ""
     clear: tuple[float, float, float, float] = (0.0, 0.0, 0.0, 0.0)
+    read_masked: tuple[str, ...] = ()
     add: bool = False
     in_place: Callable[[Mapping[str, Any]], tuple[dict[str, Any], dict[str, int]]] | None = None
     merges: tuple[str, ...] = ()
     merged: tuple["Pass", ...] = ()  # filled by `compile`
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Choice:
     """One of several resources under a name of its own; `unread` says why not the others. Nothing is copied."""
 
@@ -76,7 +78,7 @@ class Choice:
         return {self.name: None}
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Bake:
     """One node made on the CPU (a mesh, its occlusion): `make(inputs)` returns the resource called `name`.
 
@@ -165,11 +167,12 @@ class FrameGraph:
             if target not in self.writer:
                 raise FrameGraphError(f'target "{target}" is written by no pass; there are {", ".join(self.writer)}')
         nodes, wanted = self._wanted(set(targets))
-        kept = [node for node in nodes if wanted.intersection(node.writes)]
+        kept = [node for node in nodes if not wanted.isdisjoint(node.writes)]
+        culled = [node for node in nodes if wanted.isdisjoint(node.writes)]
         verdicts = [
-            Verdict(node, True, why_kept(node, kept, targets))
-            if node in kept
-            else Verdict(node, False, why_culled(node, nodes, kept))
+            Verdict(node, False, why_culled(node, kept, culled))
+            if wanted.isdisjoint(node.writes)
+            else Verdict(node, True, why_kept(node, kept, targets))
             for node in nodes
         ]
         aliases = {node.name: node.chosen for node in nodes if isinstance(node, Choice)}
@@ -248,7 +251,7 @@ def why_kept(node: Node, kept: list[Node], targets: tuple[str, ...]) -> str:
     return "; ".join(asked)
 
 
-def why_culled(node: Node, nodes: list[Node], kept: list[Node]) -> str:
+def why_culled(node: Node, kept: list[Node], culled: list[Node]) -> str:
     """Which settings keep the others from reading what the node writes."""
     reasons = [
         f"not read by {other.name}: {why}"
@@ -256,14 +259,14 @@ def why_culled(node: Node, nodes: list[Node], kept: list[Node]) -> str:
         for resource, why in other.unread.items()
         if resource in node.writes
     ]
-    if readers := readers_of(node, [other for other in nodes if other not in kept]):
+    if readers := readers_of(node, culled):
         reasons.append(f"read only by {in_words(readers)}, which {'are' if len(readers) > 1 else 'is'} culled")
     return "; ".join(dict.fromkeys(reasons)) or "nothing that is asked for reads it"
 
 
 def readers_of(node: Node, others: Iterable[Node]) -> list[str]:
     """Names of those among `others` that read what `node` writes."""
-    return [other.name for other in others if set(other.reads).intersection(node.writes)]
+    return [other.name for other in others if any(resource in node.writes for resource in other.reads)]
 
 
 def in_words(names: list[str]) -> str:

@@ -79,6 +79,7 @@ class Programs:
     def __init__(self, context: object, root: Path = GLSL) -> None:
         self.context, self.root = context, root
         self.compiled: dict[tuple[str, str, frozenset[tuple[str, int | float]]], object] = {}
+        self.defaults: dict[str, frozenset[str]] = {}
 
     def get(self, vertex: str, fragment: str, defines: Mapping[str, int | float] = NOTHING) -> object:
         """The program of two files; `defines` go to the fragment shader. `ShaderError` names file and line."""
@@ -86,6 +87,12 @@ class Programs:
         if key not in self.compiled:
             self.compiled[key] = self._compile(vertex, fragment, defines)
         return self.compiled[key]
+
+    def defaults_of(self, name: str) -> frozenset[str]:
+        """`declared_defaults`, read once."""
+        if name not in self.defaults:
+            self.defaults[name] = declared_defaults(name, self.root)
+        return self.defaults[name]
 
     def _compile(self, vertex: str, fragment: str, defines: Mapping[str, int | float]) -> object:
         sources = {"vertex": assemble(vertex, NOTHING, self.root), "fragment": assemble(fragment, defines, self.root)}
@@ -98,15 +105,20 @@ class Programs:
             raise ShaderError(f"{vertex} + {fragment}: {sources[stage].locate(str(error))}") from error
 
 
-def feed(program: object, uniforms: Mapping[str, object]) -> None:
+def feed(program: Any, uniforms: Mapping[str, object]) -> None:
     """Set every uniform of a program; one too many or one too few is a `ShaderError`, never silence."""
-    active = {name for name in program if not name.startswith("gl_") and is_uniform(program[name])}  # type: ignore
-    if unused := uniforms.keys() - active:
+    if program.extra is None:  # moderngl's place for what belongs to a program: its uniforms, and what they hold
+        active = {name: program[name] for name in program if not name.startswith("gl_") and is_uniform(program[name])}
+        program.extra = active, {}
+    active, held = program.extra
+    if unused := uniforms.keys() - active.keys():
         raise ShaderError(f"uniform {', '.join(sorted(unused))} is set but not used by the shader")
-    if missing := active - uniforms.keys():
+    if missing := active.keys() - uniforms.keys():
         raise ShaderError(f"uniform {', '.join(sorted(missing))} is used by the shader but not set")
     for name, value in uniforms.items():
-        program[name] = value  # type: ignore[index]
+        if held.get(name) != value:
+            active[name].value = value
+            held[name] = value
 
 
 def is_uniform(member: object) -> bool:

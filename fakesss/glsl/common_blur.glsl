@@ -30,11 +30,11 @@ float to_layer(float layer) { return layer; }
 #endif
 
 float blurred(float centre, vec2 here) {
-    float sum = 0.0, weights = 0.0;
+    float sum = 0.0, weights = 0.0, steepness = 1.0 / depth_range;
     for (int y = -2; y <= 2; ++y)
         for (int x = -2; x <= 2; ++x) {
             float depth = compared(texture(second, here + tap * vec2(x, y)).r);
-            float gap = clamp(abs(depth - centre) / depth_range, 0.0, 1.0);
+            float gap = min(abs(depth - centre) * steepness, 1.0);
             float weight = is_background(depth) ? 0.0 : KERNEL[3 * abs(y) + abs(x)] * (1.0 - gap);  // eq. C.1
             sum += weight * (depth - centre);  // of differences: their rounding is far below that of depths
             weights += weight;
@@ -42,9 +42,9 @@ float blurred(float centre, vec2 here) {
     return to_layer(weights > 0.0 ? centre + sum / weights : centre);
 }
 
-// `z1` is the front layer at the texel `here`, `place` the same as shares of the picture's width and height.
-float blurred_thickness_behind(float z1, ivec2 here, vec2 place) {
-    float z2 = texelFetch(second, here, 0).r;
+// `z1` is the front layer at `place`, shares of the picture's width and height.
+float blurred_thickness_behind(float z1, vec2 place) {
+    float z2 = texture(second, place).r;
 #if !AS_PUBLISHED
     if (is_empty(z2)) return open_thickness;
 #endif

@@ -2,8 +2,7 @@
 
 // base^exponent for base, exponent >= 0 with 0^0 = 1; GLSL's pow() leaves a base of 0 to the driver.
 float power(float base, float exponent) {
-    if (exponent == 0.0) return 1.0;
-    return base <= 0.0 ? 0.0 : pow(base, exponent);
+    return base > 0.0 ? pow(base, exponent) : float(exponent == 0.0);
 }
 
 float lambert(float n_dot_l) {

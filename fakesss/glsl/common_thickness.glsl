@@ -4,6 +4,6 @@
 uniform sampler2D second;
 uniform float open_thickness;  // where nothing lies behind the front layer
 
-float thickness_behind(float z1, ivec2 here) {
-    return relative_thickness(z1, texelFetch(second, here, 0).r, open_thickness);
+float thickness_behind(float z1, vec2 place) {
+    return relative_thickness(z1, texture(second, place).r, open_thickness);
 }

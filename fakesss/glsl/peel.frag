@@ -4,7 +4,8 @@
 #include "common_layers.glsl"
 
 #define AS_PUBLISHED 0  // 1: compares non-linear depths, as the program of 2011 did
-#define ALTERNATING 0  // 1: the face drawn looks the other way than the layer before, so it cannot be that layer itself
+#define BEFORE_FACES 0  // 1: the layer before is of front faces, -1: of back faces, 0: of either
+#define NEAREST 0  // 1: nothing lies before the layer before
 #define PEEL_EPSILON 1e-5  // sphere diameters: well above float32 rounding of a layer
 #define PUBLISHED_EPSILON 1e-6  // thesis appendix B, in non-linear depth
 
@@ -25,10 +26,11 @@ void main() {
     float nearest = texelFetch(before, ivec2(gl_FragCoord.xy), 0).r;
 #if AS_PUBLISHED
     bool further = window(layer) > window(nearest) + PUBLISHED_EPSILON;
-#elif ALTERNATING
-    bool further = layer >= nearest;
 #else
-    bool further = layer > nearest + PEEL_EPSILON * DIAMETER;
+    // What looks the other way is not the layer before itself, however near it is. By rounding it may come to lie
+    // before it: a triangle seen edge-on is many depths in one sample.
+    bool other = BEFORE_FACES != 0 && gl_FrontFacing == (BEFORE_FACES < 0);
+    bool further = layer > nearest + (other ? -PEEL_EPSILON : PEEL_EPSILON) * DIAMETER || (other && NEAREST == 1);
 #endif
     if (is_empty(nearest) || !further) discard;
     behind = layer;

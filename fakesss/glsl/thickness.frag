@@ -5,6 +5,6 @@ uniform sampler2D front;
 out float thickness;
 
 void main() {
-    ivec2 here = ivec2(gl_FragCoord.xy);
-    thickness = thickness_behind(texelFetch(front, here, 0).r, here);
+    vec2 place = gl_FragCoord.xy / vec2(textureSize(front, 0));
+    thickness = thickness_behind(texture(front, place).r, place);
 }

@@ -27,6 +27,7 @@ def front(setting: Setting) -> Pass:
         unread={"occlusion": lacking} if lacking else {},
         only_for={"occlusion": "surface"},
         writes={"front": TextureSpec(size, 1), "surface": TextureSpec(size, 4), "coverage": TextureSpec(size, DEPTH)},
+        read_masked=("surface",),
         depth_test=True,
     )
 

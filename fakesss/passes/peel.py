@@ -10,10 +10,16 @@ DEEPEST = 6  # layer of a bridged thickness: three intervals of matter
 
 def peel(setting: Setting) -> Pass:
     """Reads `mesh` and `front`; writes `peeled` (depth of the second layer, 0 where there is none)."""
-    published = int(setting.published)
+
+    def draw(frame: Frame) -> None:
+        # from outside, a closed surface shows front faces only
+        closed = frame.inputs["mesh"].watertight and not setting.view.clips_sphere
+        published = int(setting.published)
+        step(frame, setting, "front", "", BEFORE_FACES=int(closed), NEAREST=1, AS_PUBLISHED=published)
+
     return Pass(
         "peel",
-        lambda frame: step(frame, setting, "front", "", AS_PUBLISHED=published),
+        draw,
         reads=("mesh", "front"),
         writes={"peeled": TextureSpec(setting.size, 1)},
         depth_test=True,
@@ -29,9 +35,10 @@ def deeper(setting: Setting) -> list[Pass]:
     def one(number: int) -> Pass:
         before = "first_exit" if number == 3 else f"layer_{number - 1}"
         faces: Cull = ("front" if number % 2 == 0 else "back") if setting.outside_only else ""
+        before_faces = (1 if number % 2 == 0 else -1) if setting.outside_only else 0
         return Pass(
             f"peel_{number}",
-            lambda frame: step(frame, setting, before, faces, ALTERNATING=int(setting.outside_only)),
+            lambda frame: step(frame, setting, before, faces, BEFORE_FACES=before_faces),
             reads=("mesh", before),
             writes={f"layer_{number}": TextureSpec(setting.size, 1)},
             depth_test=True,
