@@ -1,0 +1,144 @@
+"""`fakesss bench`: what the technique costs beside direct light, and what baking costs beside bare ray casting.
+
+The two tables of the thesis (Gascons 2011, section 4.1) on this machine. Everything compared is drawn in turn within
+one run, since the machine's speed drifts; a time is the median of `REPEATS` pictures, finished on the GPU, not read
+back. The baseline is the fastest direct light we know (`fakesss.direct_light`), back faces culled.
+"""
+
+import os
+import platform
+import statistics
+import time
+from collections.abc import Callable, Mapping, Sequence
+from typing import Any
+
+import numpy as np
+from tqdm import tqdm
+
+from fakesss.colour import to_8bit
+from fakesss.direct_light import DirectLight
+from fakesss.frame import Run
+from fakesss.frame_graph import Plan
+from fakesss.hemisphere import even_directions
+from fakesss.mesh import Mesh
+from fakesss.occlusion import bake_occlusion, cast_rays, ray_origins
+from fakesss.pipeline import build
+from fakesss.ray_casting import Caster
+from fakesss.renderer import PICTURE, Renderer, shared_renderer
+from fakesss.scene import Scene
+from fakesss.solidity import is_solid
+
+FACES = (4_000, 30_000, 60_000, 100_000, 120_000, 240_000)
+SIZE = (512, 512)
+REPEATS = 15
+BUILDS = 5  # of the hierarchy
+RAYS = 320
+COARSE = 8_000  # faces of the approximate second layer
+
+# The thesis's frame rates with the technique and with direct light only, as cost ratios; GeForce 9400M.
+THESIS = {240_000: 3.6, 120_000: 4.6, 100_000: 6.2, 60_000: 5.9, 30_000: 5.0, 4_000: 2.4}
+
+METHOD = (
+    f"medians of {REPEATS} pictures in turn within one run, one sample a pixel, finished on the GPU and not read back; "
+    "direct: one forward pass into 8-bit colour, back faces culled; technique: the exact picture of the default scene; "
+    f"approximate: its second layer from {COARSE} faces; own_direct: this renderer without backlight; "
+    "largest_difference: of 8-bit codes, to the peeled, unmerged float32 path; "
+    f"bake: {RAYS} rays a vertex with the hierarchy; embree: the same rays cast barely, prepared before, on all cores"
+)
+
+
+def bench(name: str, faces: Sequence[int], size: tuple[int, int] = SIZE, repeats: int = REPEATS) -> dict[str, Any]:
+    """The contract's `bench` document for the built-in object `name` at each number of faces."""
+    renderer = shared_renderer()
+    bar = tqdm(faces, unit="size", disable=None)
+    rows = [row(renderer, Scene(object=f"{name}:{count}", size=size, supersampling=1), repeats) for count in bar]
+    return {"machine": machine(renderer), "rows": rows, "method": METHOD}
+
+
+def machine(renderer: Renderer) -> dict[str, Any]:
+    """What the figures are of."""
+    return {
+        "gl_renderer": renderer.gpu.renderer,
+        "gl_version": renderer.gpu.version,
+        "processor": platform.processor() or platform.machine(),
+        "cores": os.cpu_count(),
+        "python": platform.python_version(),
+    }
+
+
+def row(renderer: Renderer, scene: Scene, repeats: int) -> dict[str, Any]:
+    """Every figure of one object."""
+    mesh: Mesh = renderer.data(scene, ("mesh",))["mesh"]
+    drawn = picture_times(renderer, scene, mesh, repeats)
+    return {
+        "object": scene.object,
+        "faces": len(mesh.faces),
+        **{f"{name}_ms": ms for name, ms in drawn.items()},
+        **{f"{name}ratio": drawn[f"{name}technique"] / drawn["direct"] for name in ("", "peeled_", "approximate_")},
+        "largest_difference": largest_difference(renderer, scene, mesh),
+        **bake_times(mesh),
+    }
+
+
+def picture_times(renderer: Renderer, scene: Scene, mesh: Mesh, repeats: int) -> dict[str, float]:
+    """Median milliseconds of each way to draw the scene, all drawn in turn."""
+    direct = DirectLight(renderer.gpu, scene, mesh, bake_occlusion(mesh).values)
+
+    def technique(**changes: Any) -> Callable[[], None]:
+        changed = scene.replace({path.replace("__", "."): value for path, value in changes.items()})
+        plan = build(changed, 1, is_solid(mesh)).compile((PICTURE,))
+        return lambda: finished(renderer, plan)
+
+    ways: Mapping[str, Callable[[], None]] = {
+        "direct": direct,
+        "direct_unculled": lambda: direct(cull=False),
+        "own_direct": technique(material__backlight=0.0),
+        "technique": technique(),
+        "peeled_technique": technique(layers__method="peel"),
+        "approximate_technique": technique(layers__faces=COARSE),
+    }
+    return in_turn(ways, repeats)
+
+
+def in_turn(ways: Mapping[str, Callable[[], object]], repeats: int) -> dict[str, float]:
+    """Median milliseconds of each; the first two rounds, which compile and upload, do not count."""
+    taken: dict[str, list[float]] = {name: [] for name in ways}
+    for _ in range(repeats + 2):
+        for name, way in ways.items():
+            start = time.perf_counter()
+            way()
+            taken[name].append(1e3 * (time.perf_counter() - start))
+    return {name: statistics.median(times[2:]) for name, times in taken.items()}
+
+
+def finished(renderer: Renderer, plan: Plan) -> None:
+    """Draw what `plan` says and wait for it, without reading it back."""
+    Run(plan, renderer.gpu, renderer.bakes)(read=False)
+    renderer.gpu.context.finish()
+
+
+def largest_difference(renderer: Renderer, scene: Scene, mesh: Mesh) -> int:
+    """Of any 8-bit code value, between the exact technique as it is drawn and drawn without any short cut."""
+    solid = is_solid(mesh)
+    plain = build(scene.replace({"layers.method": "peel"}), 1, solid)
+    plans = (
+        build(scene, 1, solid).compile((PICTURE,)),
+        plain.compile((PICTURE, "blurred_thickness", "surface")),  # asked for, so neither merged nor left uncleared
+    )
+    pictures = [Run(plan, renderer.gpu, renderer.bakes)().values[PICTURE] for plan in plans]
+    codes = [to_8bit(picture[..., :3]).astype(int) for picture in pictures]
+    return int(np.abs(codes[0] - codes[1]).max())
+
+
+def bake_times(mesh: Mesh) -> dict[str, float]:
+    """Hierarchy (ms), whole bake without the cache (s), and million rays a second beside those of bare Embree."""
+    builds = [Caster(mesh).build_seconds for _ in range(BUILDS)]
+    start, used = time.perf_counter(), time.process_time()
+    _, cast = cast_rays(mesh, RAYS, "cosine")
+    seconds, cores = time.perf_counter() - start, time.process_time() - used
+    return {
+        "bvh_ms": 1e3 * statistics.median(builds),
+        "ao_seconds": seconds,
+        "ao_mrays_per_s": cast / seconds / 1e6,
+        "ao_cores_busy": cores / seconds,
+    }
