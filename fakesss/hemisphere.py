@@ -18,13 +18,14 @@ Floats = NDArray[np.float64]
 Floats32 = NDArray[np.float32]
 Sampling = Literal["cosine", "uniform"]
 
-# (N, 3) origins, one direction (1, 3), reaches (N,), infinite or negative: not asked; what each ray counts, (N,) finite
+# (N, 3) origins, one direction (1, 3), reaches (N,) as `ray_casting` takes them, which it may write over: what each
+# ray counts, (N,), finite
 Answer = Callable[[Floats32, Floats32, Floats32], NDArray[Any]]
 
-BLOCK = 4096  # vertices that go along one direction together: enough to make a call's cost small
+BLOCK = 2048  # vertices that go along one direction together: many enough that a call costs little beside its rays
 SHARES = 32  # of the directions, so that there is work for many cores even on a small mesh
-FAR, UNASKED = np.float32(np.inf), np.float32(-1)  # reaches, as `ray_casting` takes them
-TOGETHER = 20  # directions at once: sums of so few are exact enough in float32, and their weights stay in cache
+TOGETHER = 20  # directions at once: their weights stay in cache, and sums of so few are exact enough in float32
+FARTHER = np.float32(1e30)  # times the cosine is a reach beyond everything above the horizon, and negative below
 
 
 def even_directions(number: int) -> Floats:
@@ -70,22 +71,27 @@ def weighed(
 ) -> tuple[Floats, Floats, int]:
     """Sums over `directions` of weight times answer, and of weight, for each origin (N,); and the rays cast.
 
-    All origins go along one direction together, those below it passed over: rays alike meet the same triangles, and
-    nothing is gathered or scattered. `axes` is (3, N).
+    `axes` is (3, N). All origins go along one direction together, those below it passed over: rays alike meet the same
+    triangles, and nothing is gathered or scattered.
     """
-    total, weights, cast = np.zeros(origins.shape[0]), np.zeros(origins.shape[0]), 0
+    total, weights, cast = np.zeros(len(origins)), np.zeros(len(origins)), 0
+    buffers = np.empty((2, TOGETHER, len(origins)), np.float32)  # reused: fresh memory costs as much as the arithmetic
     for some in np.array_split(directions, -(-len(directions) // TOGETHER)):
+        cosine, ray = buffers[:, : len(some)]
         x, y, z = some.T[:, :, None]
-        cosine = x * axes[0] + y * axes[1] + z * axes[2]  # a matrix product would round as it is blocked
-        above = cosine > 0
-        weight = np.maximum(cosine, 0) if sampling == "cosine" else above.astype(np.float32)
-        reach = np.where(above, FAR, UNASKED)
-        answers = np.empty_like(weight)
-        for row, direction in enumerate(some):
-            answers[row] = answer(origins, direction[None], reach[row])
-        total += (weight * answers).sum(axis=0)
+        # a matrix product would round differently from block to block
+        np.multiply(x, axes[0], out=cosine)
+        for component, axis in ((y, axes[1]), (z, axes[2])):
+            cosine += np.multiply(component, axis, out=ray)
+        np.multiply(cosine, FARTHER, out=ray)
+        weight = np.maximum(cosine, 0, out=cosine)
+        if sampling == "uniform":
+            np.sign(weight, out=weight)
         weights += weight.sum(axis=0)
-        cast += int(np.count_nonzero(above))
+        cast += int(np.count_nonzero(weight))
+        for reach, direction in zip(ray, some, strict=True):
+            reach[:] = answer(origins, direction[None], reach)
+        total += np.multiply(weight, ray, out=ray).sum(axis=0)
     return total, weights, cast
 
 
