@@ -14,6 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from fakesss import mesh_repair, polygons, vertex_normals
+from fakesss.mesh_slivers import without_slivers
 from fakesss.problem import BadInput
 
 Floats = NDArray[np.float64]
@@ -125,6 +126,9 @@ def mesh_from_triangles(positions: Floats, faces: NDArray[np.integer[Any]], sour
     if not len(faces32):
         raise BadInput(f"{source}: every triangle is smaller than the object's rounding error; export it again")
     faces32 = mesh_repair.orient(single, faces32, repairs)
+    faces32 = without_slivers(single, faces32, repairs)
+    if not len(faces32):
+        raise BadInput(f"{source}: all corners lie on lines, so there is no surface; export it again")
     watertight = mesh_repair.is_closed(faces32)
     if not watertight:
         repairs.append("The surface is open or not orientable; it is drawn by the policy for open surfaces.")

@@ -2,8 +2,8 @@
 
 Done: triangles with two equal corners are dropped, vertices at one place become one, copies of a triangle are dropped,
 neighbours are wound alike, closed surfaces are turned outwards.
-Not done: holes are not filled and self-intersections are not resolved. Triangles whose corners lie on a line stay:
-they draw nothing, and dropping them would open the surface.
+Not done: holes are not filled and self-intersections are not resolved. Triangles whose corners lie on a line are not
+dropped, which would open the surface: see `mesh_slivers`.
 """
 
 from itertools import combinations

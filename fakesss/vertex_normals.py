@@ -20,6 +20,7 @@ Faces = NDArray[np.int32]
 
 CREASE_DEGREES = 60.0  # between face normals; a box (90) keeps its edges, a coarse scan of a smooth body gets none
 MANY_SIDED = 6  # edges with more triangles than this are hard
+SLIVER = 5e-7  # sphere radii; the normal of a triangle less high than some eight roundings to float32 is noise
 
 
 def normalised(vectors: Floats) -> Floats:
@@ -36,6 +37,17 @@ def face_normals(positions: NDArray[np.floating[Any]], faces: Faces) -> Floats:
     return normalised(np.cross(normalised(b - a), normalised(c - a)))
 
 
+def slivers(positions: NDArray[np.floating[Any]], faces: Faces) -> NDArray[np.bool_]:
+    """Whether each triangle is so thin that rounding its corners turned it anywhere; positions in sphere radii."""
+    a, b, c = (positions[faces[:, corner]].astype(np.float64) for corner in range(3))
+    sides = b - a, c - b, a - c
+    longest = np.sqrt(np.max([np.einsum("ij,ij->i", side, side) for side in sides], axis=0))
+    doubled = np.cross(sides[0], sides[1])
+    doubled_area = np.sqrt(np.einsum("ij,ij->i", doubled, doubled))
+    thin: NDArray[np.bool_] = doubled_area < SLIVER * longest
+    return thin
+
+
 def corner_angles(positions: NDArray[np.floating[Any]], faces: Faces) -> Floats:
     """The triangles' angles (F, 3), radians, at their three corners."""
     points = positions[faces].astype(np.float64)
@@ -48,12 +60,13 @@ def with_creases(positions: Floats32, faces: Faces) -> tuple[Floats32, Floats32,
     """Positions and normals (V', 3) and faces (F, 3), vertices on creases split so that each side has its own normal.
 
     A crease is an edge where the face normals differ by more than `CREASE_DEGREES`; where more than two triangles meet,
-    as on a sheet that was modelled from both sides, each goes on smoothly into those that face like it. Where the
-    weighted normals cancel, the vertex takes the normal of one of its triangles, and where none has any area, the
-    direction away from the centre.
+    as on a sheet that was modelled from both sides, each goes on smoothly into those that face like it. Slivers do not
+    count, and make no crease. Where the weighted normals cancel, the vertex takes the normal of one of its triangles,
+    and where all are slivers, the direction away from the centre.
     """
     flat = face_normals(positions, faces)
-    origin, faces = split_at_creases(len(positions), faces, flat)
+    flat[slivers(positions, faces)] = 0
+    origin, faces = split_at_creases(positions, faces, flat)
     positions = positions[origin]
     weighted = corner_angles(positions, faces)[:, :, None] * flat[:, None, :]
     total: Floats = np.stack(
@@ -71,10 +84,12 @@ def with_creases(positions: Floats32, faces: Faces) -> tuple[Floats32, Floats32,
     return positions, normals.astype(np.float32), faces
 
 
-def split_at_creases(vertices: int, faces: Faces, flat: Floats) -> tuple[NDArray[np.int64], Faces]:
+def split_at_creases(positions: Floats32, faces: Faces, flat: Floats) -> tuple[NDArray[np.int64], Faces]:
     """For each new vertex the old one it copies, and the faces in new vertices; no crease: nothing changes."""
+    vertices = len(positions)
     half_a, half_b = half_edge_pairs(faces, most=MANY_SIDED)
-    smooth = (flat[half_a // 3] * flat[half_b // 3]).sum(axis=1) >= np.cos(np.radians(CREASE_DEGREES))
+    compared = with_lent_normals(positions, faces, flat, (half_a, half_b))
+    smooth = (compared[half_a // 3] * compared[half_b // 3]).sum(axis=1) >= np.cos(np.radians(CREASE_DEGREES))
     # a half-edge that no smooth pair joins to a neighbour lies on a crease, a border or a many-sided edge
     joined = np.zeros(faces.size, bool)
     joined[half_a[smooth]] = joined[half_b[smooth]] = True
@@ -96,6 +111,31 @@ def split_at_creases(vertices: int, faces: Faces, flat: Floats) -> tuple[NDArray
     corners = corner_vertex.copy()
     corners[touched] = new[inverse]
     return np.concatenate([np.arange(vertices), old[order[repeated]]]), corners.reshape(-1, 3)
+
+
+def with_lent_normals(
+    positions: Floats32, faces: Faces, flat: Floats, pairs: tuple[NDArray[np.int64], NDArray[np.int64]]
+) -> Floats:
+    """Face normals in which a triangle without its own has that of its neighbour across the longest side.
+
+    It lies in that side, so it bends there no more than rounding; across the other two it then bends as much as its
+    neighbours do. Where that neighbour has none to lend, another's is taken.
+    """
+    if flat.any(axis=1).all():
+        return flat
+    lent = flat.copy()
+    corners = positions[faces].astype(np.float64)
+    length = ((np.roll(corners, -1, axis=1) - corners) ** 2).sum(axis=2)
+    longest = (length == length.max(axis=1, keepdims=True)).ravel()
+    mine, other = np.concatenate(pairs), np.concatenate(pairs[::-1])
+    for allowed in (longest[mine], np.ones(len(mine), bool)):
+        while True:
+            has: NDArray[np.bool_] = np.any(lent != 0, axis=1)
+            gets = allowed & ~has[mine // 3] & has[other // 3]
+            if not gets.any():
+                break
+            lent[mine[gets] // 3] = lent[other[gets] // 3]
+    return lent
 
 
 def corner_fans(
