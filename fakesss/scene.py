@@ -94,8 +94,8 @@ class Occlusion(Strict):
 class Layers(Strict):
     """How the second layer is found, and what the thicknesses other than the first interval need."""
 
-    method: Literal["auto", "peel", "back-faces"] = Field(
-        "auto", description="auto: the cheaper exact one for the mesh; peel: any mesh; back-faces: watertight ones"
+    method: Literal["auto", "peel"] = Field(
+        "auto", description="auto: back faces of a solid, else the peel; peel: always, to compare"
     )
     gap: Annotated[float, Field(gt=0, le=10)] = Field(
         0.05, description="bridged: width of a gap after which matter counts 1/e, in sphere diameters"

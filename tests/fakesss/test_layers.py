@@ -5,8 +5,10 @@ from pathlib import Path
 import numpy as np
 import pytest
 from picture_scenes import dark, sheet_file
+from numpy.typing import NDArray
 from scipy.ndimage import binary_erosion
 
+from fakesss.hard_edges import hard_edges
 from fakesss.problem import BadInput
 from fakesss.renderer import Renderer, render
 from fakesss.scene import Scene
@@ -58,6 +60,50 @@ def test_blur_softens_the_second_layer_and_nothing_else(renderer: Renderer) -> N
     bend = [np.abs(np.diff(layer, 2, axis=1))[inside[:, 1:-1]].max() for layer in far_side]
     assert bend[1] < 0.5 * bend[0]
     assert np.abs(exact - soft)[inside].max() < 0.01
+
+
+KINDS = ["first-interval", "bridged", "total-path"]
+SEEN = {"camera.azimuth": 25.0, "camera.elevation": 20.0}
+
+
+def kinds(renderer: Renderer, name: str, size: int, **gap: float) -> list[NDArray[np.float32]]:
+    """Front layer, and the thickness of each of KINDS."""
+    scene = Scene(object=name, size=(size, size)).replace({**SEEN, **{f"layers.{key}": v for key, v in gap.items()}})
+    layers = [renderer.data(scene.replace({"material.thickness": k}), ("thickness",))["thickness"] for k in KINDS]
+    return [renderer.data(scene, ("front",))["front"], *layers]
+
+
+@pytest.mark.parametrize("name", ["knot:8000", "hand:8000", "figure:8000"])
+def test_bridged_thickness_lies_between_the_first_interval_and_the_total_path(renderer: Renderer, name: str) -> None:
+    _, first, bridged, total = kinds(renderer, name, 128)
+    outside = (bridged < first - 1e-5) | (bridged > total + 1e-5)
+    assert outside.sum() <= 2  # samples at a triangle seen edge-on, where entry and exit change places by rounding
+    assert (bridged > first + 0.01).any() and (bridged < total - 0.01).any()
+    _, first, narrow, _ = kinds(renderer, name, 128, gap=1e-6)
+    assert np.percentile(np.abs(narrow - first), 99) < 1e-5
+
+
+def test_bridging_removes_hard_edges_and_lets_thin_parts_glow(renderer: Renderer) -> None:
+    """The shell's walls: jumps become slopes, whose length falls as the resolution rises; a jump's does not."""
+    lengths = {}
+    for size in (256, 512):
+        front, *layers = kinds(renderer, "shell:60000", size)
+        lengths[size] = [hard_edges(front, layer).length(1 / size) for layer in layers]
+    assert lengths[512][0] > 0.9 * lengths[256][0] > 0.5
+    assert lengths[512][1] < 0.35 * lengths[512][0] and lengths[512][2] < 0.05 * lengths[512][0]
+    _, first, bridged, total = kinds(renderer, "knot:8000", 128)
+    thin = (first > 0) & (first < 0.1) & (total > 0.25)  # a thin part before a thick one
+    assert thin.sum() > 100
+    assert np.median(bridged[thin]) < 0.4 * np.median(total[thin])
+
+
+def test_a_coarser_second_layer_is_near_the_exact_one(renderer: Renderer) -> None:
+    scene = Scene(object="torus:30000", size=(128, 128)).replace(SEEN)
+    exact, coarse = (
+        renderer.data(scene.replace({"layers.faces": faces}), ("thickness",))["thickness"] for faces in (None, 4000)
+    )
+    difference = np.abs(exact - coarse)
+    assert 0 < difference.max() and np.percentile(difference[exact > 0.02], 99) < 5e-3
 
 
 @pytest.mark.parametrize("target", ["thickness", "front", "second", "blurred_thickness"])
