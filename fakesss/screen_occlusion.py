@@ -31,7 +31,7 @@ def sampled(front: Floats, surface: Floats, view: View, settings: Occlusion) -> 
     height, width = front.shape
     y, x = np.nonzero(front > 0)
     middle = unprojected(x, y, front, view)
-    normal = surface[y, x, :3].astype(np.float64) * (1, 1, -1)
+    normal = surface[y, x, :3].astype(np.float64)
     frame = (*frame_around(normal), normal)
     tile = TILE[y & 3, x & 3]
     count = settings.samples // POINTS
@@ -48,12 +48,13 @@ def sampled(front: Floats, surface: Floats, view: View, settings: Occlusion) -> 
 
 
 def unprojected(x: NDArray[np.int64], y: NDArray[np.int64], front: Floats, view: View) -> Float:
-    """Points (N, 3) of the texels: x right, y up, layer."""
+    """Points (N, 3) of the texels in the eye frame, from the sphere's centre."""
     height, width = front.shape
     layer = front[y, x].astype(np.float64)
-    depth = layer - ORIGIN + view.distance
+    beyond = layer - ORIGIN
+    depth = beyond + view.distance
     across = (2 * (x + 0.5) / width - 1) * view.tangent[0] * depth
-    return np.column_stack([across, (2 * (y + 0.5) / height - 1) * view.tangent[1] * depth, layer])
+    return np.column_stack([across, (2 * (y + 0.5) / height - 1) * view.tangent[1] * depth, -beyond])
 
 
 def frame_around(n: Float) -> tuple[Float, Float]:
@@ -75,16 +76,16 @@ def direction(share: float, turn: Float, sampling: str) -> Float:
 def hidden(point: Float, middle: Float, normal: Float, front: Floats, view: View, settings: Occlusion) -> Float:
     """Whether the front layer hides `point` in the hemisphere around `middle` (all (N, 3)): 0..1, (N,)."""
     height, width = front.shape
-    depth = point[:, 2] - ORIGIN + view.distance
+    depth = view.distance - point[:, 2]
     with np.errstate(divide="ignore", invalid="ignore"):
         place = 0.5 + 0.5 * point[:, :2] / (depth[:, None] * view.tangent)
     seen = (depth > 0) & (place >= 0).all(axis=1) & (place <= 1).all(axis=1)
     texel = np.minimum(np.where(seen[:, None], place, 0) * (width, height), (width - 1, height - 1)).astype(np.int64)
     occluder = unprojected(texel[:, 0], texel[:, 1], front, view)
-    layer, bias = occluder[:, 2], 2 * settings.bias
-    in_front = (layer > 0) & (point[:, 2] > layer + bias)
+    layer, bias = front[texel[:, 1], texel[:, 0]], 2 * settings.bias
+    in_front = (layer > 0) & (ORIGIN - point[:, 2] > layer + bias)
     above = ((occluder - middle) * normal).sum(axis=1) > bias
-    reach = np.clip(2 - (middle[:, 2] - layer) / (2 * settings.radius), 0, 1)
+    reach = np.clip(2 - (ORIGIN - middle[:, 2] - layer) / (2 * settings.radius), 0, 1)
     return np.where(seen & in_front & above, reach, 0)
 
 

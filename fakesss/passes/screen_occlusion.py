@@ -16,7 +16,7 @@ def sample_occlusion(setting: Setting) -> Pass:
     settings, view = setting.scene.occlusion, setting.view
     uniforms = {
         "tangent": view.tangent,
-        "distance": view.distance,
+        "camera_distance": view.distance,
         "radius": 2 * settings.radius,
         "bias": 2 * settings.bias,
     }

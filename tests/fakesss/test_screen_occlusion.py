@@ -109,7 +109,7 @@ def test_beside_a_wall_is_as_open_as_the_closed_form(
     data = {name: image[::-1] for name, image in renderer.data(scene, names).items()}
     y, x = np.nonzero(data["front"] > 0)
     points = unprojected(x, y, data["front"], View.of(scene.camera, scene.size))
-    normals = data["surface"][y, x, :3] * (1, 1, -1)
+    normals = data["surface"][y, x, :3]
     floor = normals[:, 1] > 0.1
     apart = (points - points[~floor][0]) @ normals[~floor][0]
     sure = floor & (np.abs(points[:, 0]) < 0.3) & (apart > 0.01) & (apart < 0.6)
