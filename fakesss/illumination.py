@@ -40,7 +40,7 @@ def spot_exponent(v: ArrayLike, edge: ArrayLike, exponent: ArrayLike) -> Array:
 
 def spot_linear(v: ArrayLike, edge: ArrayLike) -> Array:
     """(c - cf) / (1 - cf) for the cosines c of the angle off the axis and cf of the cut-off, 0 outside the cone."""
-    return np.asarray(np.maximum(1 - np.asarray(v, float) / edge, 0.0))
+    return np.asarray(np.maximum(edge - np.asarray(v, float), 0.0) / edge)
 
 
 def cone(light: Light) -> tuple[float, float, bool]:

@@ -62,5 +62,5 @@ class Shadow(Strict):
         0.01, description="of the disc filter's penumbra, in sphere diameters"
     )
     bias: Annotated[float, Field(ge=0, le=0.1)] = Field(
-        1e-3, description="depth by which a surface may lie behind the map and still be lit, in sphere diameters"
+        3e-3, description="depth by which a surface may lie behind the map and still be lit, in sphere diameters"
     )

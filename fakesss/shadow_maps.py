@@ -24,7 +24,8 @@ TEXELS_PER_PIXEL = 4  # of the picture's longer side, where the scene gives no s
 LARGEST = 4096  # texels, side of such a map
 MOST_TEXELS = 8192  # side of all maps together, where the scene gives no size
 TEXTURE = 16384  # texels: the longest side of a texture
-STEEPEST = 10.0  # slope from which on a surface counts as no steeper
+STEEPEST = 30.0  # slope, depth per length across, from which on a surface counts as no steeper
+REACH = 0.2  # how far before a surface its own plane is followed
 FLIP = np.diag([1.0, 1.0, -1.0])  # between z towards the viewer and depth away from it
 SIDES = np.array(  # of a cube: rotations that put ahead what was ahead, back, right, left, up, down
     [
@@ -67,9 +68,14 @@ def light_rotation(light: Light) -> Array:
     return np.array([right, np.cross(towards, right), towards])
 
 
+def is_outside(light: Light) -> bool:
+    """Whether the light is outside the bounding sphere."""
+    return light.kind == "directional" or light.distance > 1
+
+
 def half_angle(light: Light) -> float:
     """Degrees of the cone that the light reaches the bounding sphere in; 180 for a point light inside."""
-    sphere = math.degrees(math.asin(1 / light.distance)) if light.distance > 1 else 180.0
+    sphere = math.degrees(math.asin(1 / light.distance)) if is_outside(light) else 180.0
     return min(sphere, light.cutoff) if light.kind == "spot" else sphere
 
 

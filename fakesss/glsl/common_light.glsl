@@ -22,5 +22,5 @@ float spot_exponent(float v, float edge, float exponent) {
 }
 
 float spot_linear(float v, float edge) {
-    return max(1.0 - v / edge, 0.0);
+    return max(edge - v, 0.0) / edge;
 }

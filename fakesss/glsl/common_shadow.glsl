@@ -5,7 +5,9 @@
 #define SHADOW_LIGHTS 1  // length of the arrays
 #define SHADOW_FILTER 1  // 0: one comparison; 1: 4 x 4 of them; 2: samples in a disc
 #define SHADOW_SAMPLES 8  // of the disc
-#define STEEPEST 10.0  // slope, depth per length across, from which on a surface counts as no steeper
+
+const float STEEPEST = 30.0;  // slope, depth per length across, from which on a surface counts as no steeper
+const float REACH = 0.2;  // sphere radii: a wide disc on a steep plane would else reach past what casts the shadow
 
 uniform sampler2D shadow_maps;  // linear depth as the light sees it, sphere radii
 uniform mat3 shadow_turn[SHADOW_LIGHTS];  // from the camera's to the light's (right, up, away)
@@ -51,7 +53,8 @@ vec2 depth_slope(vec3 normal, vec3 along) {
 float passes(vec2 tap, vec2 texel, ivec2 corner, float depth, vec2 slope) {
     vec2 centre = floor(clamp(tap, vec2(0.0), vec2(map_side - 1))) + 0.5;
     vec2 place = (vec2(corner) + centre) / vec2(textureSize(shadow_maps, 0));
-    return depth + min(dot(slope, centre - texel), 0.0) > textureLod(shadow_maps, place, 0.0).r ? 0.0 : 1.0;
+    float plane = clamp(dot(slope, centre - texel), -REACH, 0.0);
+    return depth + plane > textureLod(shadow_maps, place, 0.0).r ? 0.0 : 1.0;
 }
 
 // `texel` is the place in the map whose first texel is `corner`, `slope` that of the surface per texel.

@@ -7,7 +7,7 @@ from fakesss.frame import Frame
 from fakesss.frame_graph import Pass, TextureSpec
 from fakesss.passes.geometry import Cull, draw_mesh
 from fakesss.passes.lights import array
-from fakesss.shadow_maps import Atlas, atlas, map_views
+from fakesss.shadow_maps import Atlas, atlas, is_outside, map_views
 
 NOTHING = 1e9  # depth where a light sees nothing of the object, sphere radii: behind everything
 FILTERS = {"hard": 0, "pcf": 1, "disc": 2}
@@ -21,18 +21,17 @@ def layout_of(setting: Setting) -> Atlas:
 def shadow(setting: Setting) -> Pass:
     """Reads `mesh`; writes `shadow_maps` (linear depth from each light, see shadow_maps.py).
 
-    Of a solid only back faces are drawn: what lies in front of a lit surface has one, and the surface itself is not in
-    its own way. In an open mesh any face may be all there is.
+    A light outside a solid sees nothing but front faces, so the others are not drawn.
     """
     casting, layout = setting.casting, layout_of(setting)
-    cull: Cull = "front" if setting.solid else ""
 
     def draw(frame: Frame) -> None:
-        maps = [seen for light in casting for seen in map_views(light, setting.view)]
-        for number, seen in enumerate(maps):
+        maps = [(light, seen) for light in casting for seen in map_views(light, setting.view)]
+        for number, (light, seen) in enumerate(maps):
             frame.target.viewport = (*layout.corner(number), layout.side, layout.side)
             program = frame.program("shadow.vert", "shadow.frag", seen.uniforms, {})
-            draw_mesh(frame, frame.inputs["mesh"], setting.view, program, [], cull)
+            faces: Cull = "back" if setting.solid and is_outside(light) else ""
+            draw_mesh(frame, frame.inputs["mesh"], setting.view, program, [], faces)
         frame.target.viewport = (0, 0, *layout.size)  # the target is used again
 
     return Pass(

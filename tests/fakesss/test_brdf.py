@@ -8,9 +8,10 @@ from hypothesis import given
 from hypothesis import strategies as st
 from numpy.typing import NDArray
 
-from fakesss import brdf, camera, colour
+from fakesss import brdf, camera, colour, illumination
 from fakesss.gpu import Gpu
 from fakesss.shader_source import GLSL, Programs
+from fakesss.shadow_maps import SIDES, cube_side, slope_bias
 
 COUNT = 4096
 TERM = """#include "{file}"
@@ -78,6 +79,36 @@ TERMS = [
         "linear_depth(x.x, vec2(1.0, 3.0))",
         [(0, 1)],
         lambda x: camera.linear_depth(x[0], 1.0, 3.0),
+    ),
+    (
+        "attenuation",
+        "common_light.glsl",
+        "attenuation(x.x, x.yzw)",
+        [(0, 10), (0, 1), (0, 1), (0, 1)],
+        lambda x: illumination.attenuation(x[0], (x[1], x[2], x[3])),
+    ),
+    (
+        "spot_exponent",
+        "common_light.glsl",
+        "spot_exponent(x.x, x.y, x.z)",
+        [(0, 2), (1e-6, 1), (0, 60)],
+        lambda x: illumination.spot_exponent(x[0], x[1], x[2]),
+    ),
+    (
+        "spot_linear",
+        "common_light.glsl",
+        "spot_linear(x.x, x.y)",
+        [(0, 2), (0.1, 1)],
+        lambda x: illumination.spot_linear(x[0], x[1]),
+    ),
+    ("slope_bias", "common_shadow.glsl", "slope_bias(x.x, x.y)", [(0, 0.1), (0, 1)], lambda x: slope_bias(x[0], x[1])),
+    ("cube_side", "common_shadow.glsl", "cube_side(x.xyz)", [(-1, 1)] * 3, lambda x: cube_side(x[:3].T)),
+    (
+        "ahead",
+        "common_shadow.glsl",
+        "dot(ahead(x.xyz, cube_side(x.xyz)), vec3(1.0, 10.0, 100.0))",
+        [(-1, 1)] * 3,
+        lambda x: np.einsum("nij,nj->ni", SIDES[cube_side(x[:3].T)], x[:3].T) @ [1, 10, 100],
     ),
     ("decode_srgb", "common_colour.glsl", "decode_srgb(x.xxx).x", [(0, 1)], lambda x: colour.decode_srgb(x[0])),
 ]

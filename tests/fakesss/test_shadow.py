@@ -1,0 +1,294 @@
+"""Shadow maps against exact rays and closed forms, and what they must leave alone."""
+
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+import trimesh
+from numpy.typing import NDArray
+from picture_scenes import dark, sheet_file
+from scipy.ndimage import maximum_filter, minimum_filter
+
+from fakesss import illumination
+from fakesss.camera import View
+from fakesss.lights import Light
+from fakesss.problem import BadInput
+from fakesss.ray_casting import Caster
+from fakesss.renderer import Renderer
+from fakesss.scene import Scene
+from fakesss.shadow_maps import REACH, SIDES, TEXTURE, MapView, atlas, depth_slope, is_outside, map_views
+from fakesss.shapes import load_object
+
+LIT = {"light__diffuse": (1, 1, 1), "material__diffuse": (1, 1, 1), "material__diffuse_contribution": 1.0}
+KINDS: dict[str, dict[str, Any]] = {
+    "directional": {},
+    "spot": {"light.kind": "spot", "light.distance": 3.0},
+    "point": {"light.kind": "point", "light.distance": 1.5},
+    "point, six maps": {"light.kind": "point", "light.distance": 1.05},
+    "far point": {"light.kind": "point", "light.distance": 1e4},
+}
+
+
+def light_visible(renderer: Renderer, scene: Scene) -> tuple[NDArray[Any], NDArray[Any], NDArray[np.bool_]]:
+    """The share of `light` that shadows let through, N.L and coverage, (H, W)."""
+    shadowed, plain = (renderer.render(scene.replace({"light.shadows": on})).image[..., 0] for on in (True, False))
+    data = renderer.data(scene, ("front", "surface"))
+    view = View.of(scene.camera, scene.size)
+    to_light = illumination.arriving(scene.light, view, illumination.positions(view, data["front"]))[0]
+    n_dot_l = (data["surface"][..., :3] * to_light).sum(axis=-1)
+    return shadowed / np.where(plain > 0, plain, 1), n_dot_l, (data["front"] > 0) & (plain > 0)
+
+
+def rays_clear(renderer: Renderer, scene: Scene, asked: NDArray[np.bool_]) -> NDArray[np.bool_]:
+    """Whether nothing lies between each asked point and the light, by rays through the same triangles."""
+    data, view = renderer.data(scene, ("front", "surface")), View.of(scene.camera, scene.size)
+    points = illumination.positions(view, data["front"])
+    to_light = illumination.arriving(scene.light, view, points)[0]
+    place = illumination.place(scene.light, view)
+    reach = np.linalg.norm(place[:3] - points, axis=-1) if place[3] else np.full(asked.shape, np.inf)
+    starts = (points + 2e-3 * data["surface"][..., :3]) @ view.rotation
+    directions = (to_light @ view.rotation)[asked].astype(np.float32)
+    clear = np.zeros(asked.shape, bool)
+    rays = starts[asked].astype(np.float32), directions, reach[asked].astype(np.float32)
+    clear[asked] = Caster(load_object(scene.object)).clear(*rays)
+    return clear
+
+
+@pytest.mark.gl
+@pytest.mark.parametrize("name", ["figure:30000", "knot:8000", "relief:30000"])
+@pytest.mark.parametrize("kind", KINDS.values(), ids=KINDS)
+@pytest.mark.parametrize("filtering", ["hard", "pcf"])
+def test_shadows_are_where_rays_are_blocked(
+    renderer: Renderer, name: str, kind: dict[str, Any], filtering: str
+) -> None:
+    """Off a shadow's edge by two pixels and not at grazing light, less than one pixel in a thousand is wrong."""
+    scene = dark(object=name, size=(200, 200), light__azimuth=-60.0, light__elevation=25.0, **LIT)
+    scene = scene.replace({**kind, "shadow.filter": filtering})
+    share, n_dot_l, covered = light_visible(renderer, scene)
+    asked = covered & (n_dot_l > 0.15)
+    clear = rays_clear(renderer, scene, asked)
+    even = maximum_filter(np.where(asked, clear, False), 5) == minimum_filter(np.where(asked, clear, True), 5)
+    sure = asked & even
+    wrong = sure & (np.abs(share - clear) > 0.5)
+    assert wrong.sum() <= 1e-3 * sure.sum()
+    assert np.abs(share - clear)[sure].mean() < 3e-3
+    assert min(clear[sure].sum(), (~clear)[sure].sum()) > 100
+
+
+def ball_on_table(folder: Path) -> str:
+    """A table of 4 x 4 in the plane y = 0 and a ball of radius 0.5 floating at y = 1, before it is scaled."""
+    table = trimesh.creation.box([4, 0.2, 4])
+    table.apply_translation([0, -0.1, 0])
+    ball = trimesh.creation.icosphere(5, 0.5)
+    ball.apply_translation([0, 1, 0])
+    path = folder / "ball.ply"
+    trimesh.util.concatenate([table, ball]).export(path)
+    return str(path)
+
+
+@pytest.mark.gl
+@pytest.mark.parametrize("filtering", ["hard", "pcf", "disc"])
+@pytest.mark.parametrize("kind", ["directional", "point"])
+def test_a_balls_shadow_on_a_table_is_an_ellipse(renderer: Renderer, tmp_path: Path, filtering: str, kind: str) -> None:
+    """A point is in shadow if its line to the light passes the ball's centre by less than the radius."""
+    scene = dark(object=ball_on_table(tmp_path), size=(200, 200), camera__elevation=50.0, light__azimuth=40.0, **LIT)
+    filters = {"shadow.filter": filtering, "shadow.radius": 0.004, "shadow.samples": 16}
+    scene = scene.replace({**filters, "light.kind": kind, "light.distance": 2.0})
+    share, _, covered = light_visible(renderer, scene)
+    data, view, mesh = (
+        renderer.data(scene, ("front", "surface")),
+        View.of(scene.camera, scene.size),
+        load_object(scene.object),
+    )
+    points = illumination.positions(view, data["front"])
+    to_light = illumination.arriving(scene.light, view, points)[0]
+    centre = view.rotation @ ((np.array([0, 1, 0]) - mesh.centre) / mesh.radius)
+    offset = centre - points
+    along = (offset * to_light).sum(axis=-1)
+    passing = np.sqrt(np.maximum((offset**2).sum(axis=-1) - along**2, 0)) * mesh.radius / 0.5  # in radii of the ball
+    up = (data["surface"][..., :3] @ view.rotation)[..., 1] > 0.999
+    table = covered & up & (np.linalg.norm(offset, axis=-1) * mesh.radius > 0.6)
+    inner, outer = table & (passing < 0.93), table & (passing > 1.07)
+    assert inner.sum() > 300 and outer.sum() > 3000
+    assert share[inner].max() == 0 and share[outer].min() > 0.999
+
+
+@pytest.mark.gl
+@pytest.mark.parametrize(
+    ("filtering", "elevation"),
+    [(name, e) for name in ("hard", "pcf") for e in (2.0, 5.0, 20.0, 85.0)] + [("disc", 7.0), ("disc", 20.0)],
+)
+@pytest.mark.parametrize("name", ["sheet", "box:4000"])
+def test_a_flat_surface_does_not_shadow_itself(
+    renderer: Renderer, tmp_path: Path, name: str, filtering: str, elevation: float
+) -> None:
+    """Not even at grazing light, from N.L = 0.03 on, the wide disc from 0.12; the box shows its front and its top."""
+    scene = dark(object=sheet_file(tmp_path) if name == "sheet" else name, size=(64, 64), **LIT)
+    scene = scene.replace({"shadow.map_size": 1024})
+    changes = {"light.azimuth": 90 - elevation, "light.elevation": elevation, "shadow.filter": filtering}
+    share, _, covered = light_visible(renderer, scene.replace({**changes, "camera.elevation": 10.0}))
+    assert covered.sum() > 500
+    assert (share[covered] > 0.999).mean() > 0.97 and share[covered].mean() > 0.985
+
+
+@pytest.mark.gl
+@pytest.mark.parametrize("kind", KINDS.values(), ids=KINDS)
+@pytest.mark.parametrize("filtering", ["hard", "pcf"])
+def test_a_round_surface_does_not_shadow_itself(renderer: Renderer, kind: dict[str, Any], filtering: str) -> None:
+    scene = dark(object="sphere:20000", size=(128, 128), **LIT).replace({**kind, "shadow.filter": filtering})
+    share, n_dot_l, covered = light_visible(renderer, scene)
+    lit = covered & (n_dot_l > 0.1)
+    assert lit.sum() > 300 and share[lit].min() > 0.99
+
+
+@pytest.mark.gl
+def test_shadows_leave_ambient_light_and_backlight_alone(renderer: Renderer) -> None:
+    scene = Scene(object="figure:8000", size=(96, 96)).replace({"light.azimuth": -80.0, "light.kind": "spot"})
+    unlit = {"light.diffuse": (0, 0, 0), "light.specular": (0, 0, 0)}
+    plain, shadowed, none = (
+        renderer.render(scene.replace(change)).image for change in ({}, {"light.shadows": True}, unlit)
+    )
+    assert (shadowed > none - 1e-6).all() and (shadowed < plain + 1e-6).all()
+    dimmed = shadowed < plain - 1e-3
+    assert dimmed[..., 0].sum() > 300
+    assert np.isclose(shadowed, none)[dimmed].mean() > 0.5  # most of what is dimmed has nothing but these left
+
+
+@pytest.mark.gl
+def test_each_light_has_a_shadow_of_its_own(renderer: Renderer) -> None:
+    """Red and blue from two sides, each in channels of its own: the same as one at a time."""
+    scene = dark(object="knot:8000", size=(96, 96), material__diffuse=(1, 1, 1), material__diffuse_contribution=1.0)
+    red = {"azimuth": -60.0, "diffuse": (1, 0, 0), "shadows": True, "kind": "point", "distance": 0.9}
+    blue = {"azimuth": 60.0, "diffuse": (0, 0, 1), "shadows": True, "specular": (0, 0, 0)}
+    scene = scene.replace({"material.specular": 0.0, "shadow.map_size": 512})
+    both, only_red, only_blue = (
+        renderer.render(scene.replace({"lights": lights})).image[..., :3] for lights in ([red, blue], [red], [blue])
+    )
+    np.testing.assert_allclose(both, only_red + only_blue, atol=1e-6)
+    assert both[..., 0].max() > 0.3 and both[..., 2].max() > 0.3
+
+
+@pytest.mark.gl
+@pytest.mark.parametrize("name", ["directional", "spot", "point, six maps"])
+def test_a_hard_shadow_is_what_the_map_says(renderer: Renderer, name: str) -> None:
+    """The numpy way through the same map, texel by texel."""
+    scene = dark(object="figure:8000", size=(96, 96), light__azimuth=-60.0, light__shadows=True, **LIT)
+    scene = scene.replace({**KINDS[name], "shadow.filter": "hard", "shadow.map_size": 256})
+    share, n_dot_l, covered = light_visible(renderer, scene)
+    data, view = renderer.data(scene, ("front", "surface", "shadow_maps")), View.of(scene.camera, scene.size)
+    maps, layout = data["shadow_maps"][::-1], atlas([scene.light], 256, scene.size)
+    seen = map_views(scene.light, view)
+    flip = np.array([1, 1, -1])
+    points, normals = illumination.positions(view, data["front"]) * flip, data["surface"][..., :3] * flip
+    expected = np.zeros(covered.shape)
+    for number, one in enumerate(seen):
+        p, n = points @ one.turn.T + one.centre, normals @ one.turn.T
+        mine = covered if len(seen) == 1 else covered & (p[..., 2] >= np.abs(p).max(axis=-1) - 1e-12)
+        expected[mine] = read_hard(maps, layout.corner(number), 256, one, p[mine], n[mine], n_dot_l[mine], scene)
+    lit = covered & (n_dot_l > 1e-3)
+    # a point on the seam of two texels may fall into either
+    assert (np.abs(share - expected)[lit] > 1e-3).mean() < 2e-3
+
+
+def read_hard(
+    maps: NDArray[Any],
+    corner: tuple[int, int],
+    side: int,
+    one: MapView,
+    p: NDArray[Any],
+    n: NDArray[Any],
+    n_dot_l: NDArray[Any],
+    scene: Scene,
+) -> NDArray[np.float64]:
+    """1 where points (N, 3) in a map's frame are lit."""
+    width = one.width[0] + one.width[1] * p[:, 2]
+    texel = (p[:, :2] / (width * one.half_width)[:, None] * 0.5 + 0.5) * side
+    along = np.column_stack([one.width[1] * p[:, :2] / width[:, None], np.ones(len(p))])
+    slope = depth_slope(n, along) * (2 * width * one.half_width / side)[:, None]
+    tap = np.clip(np.floor(texel), 0, side - 1)
+    plane = np.clip((slope * (tap + 0.5 - texel)).sum(axis=1), -REACH, 0)
+    bias = 2 * scene.shadow.bias
+    tangent = np.sqrt(1 - np.minimum(n_dot_l, 1) ** 2) / np.maximum(n_dot_l, 1e-9)
+    x, y = (tap.astype(int) + corner).T
+    return np.where(p[:, 2] - np.clip(bias * tangent, bias, 2 * bias) + plane > maps[y, x], 0.0, 1.0)
+
+
+@pytest.mark.gl
+def test_a_disc_blurs_as_wide_as_it_is(renderer: Renderer, tmp_path: Path) -> None:
+    scene = dark(object=ball_on_table(tmp_path), size=(160, 160), camera__elevation=50.0, light__azimuth=40.0, **LIT)
+    soft = []
+    for radius in (0.005, 0.02):
+        changed = scene.replace({"shadow.filter": "disc", "shadow.radius": radius, "shadow.samples": 32})
+        share, n_dot_l, covered = light_visible(renderer, changed)
+        soft.append(((share > 0.05) & (share < 0.95) & covered & (n_dot_l > 0.5)).sum())
+    assert 2.5 < soft[1] / soft[0] < 6
+
+
+@pytest.mark.gl
+def test_a_picture_with_shadows_is_the_same_bytes_every_time(renderer: Renderer) -> None:
+    scene = Scene(object="knot:4000", size=(64, 48)).replace({"light.shadows": True, "shadow.filter": "disc"})
+    first = renderer.render(scene).image.tobytes()
+    renderer.render(scene.replace({"light.kind": "point", "light.distance": 0.5, "shadow.map_size": 64}))
+    assert renderer.render(scene).image.tobytes() == first
+
+
+LIGHTS = [
+    Light(),
+    Light(kind="point", distance=1e4),
+    Light(kind="point", distance=1.2),
+    Light(kind="spot", cutoff=90.0),
+    Light(kind="point", distance=1.01),
+    Light(kind="point", distance=0.0),
+    Light(kind="spot", cutoff=80.0, distance=0.5),
+]
+
+
+@pytest.mark.parametrize("light", LIGHTS, ids=str)
+def test_the_maps_of_a_light_show_the_whole_sphere(light: Light) -> None:
+    view = View.of(Scene().camera, (512, 512))
+    directions = np.random.default_rng(0).normal(size=(2000, 3))
+    points = directions / np.linalg.norm(directions, axis=1, keepdims=True)
+    shown = np.zeros(len(points), bool)
+    for one in map_views(light, view):
+        seen = points @ one.turn.T + one.centre
+        width = one.width[0] + one.width[1] * seen[:, 2]
+        inside = (np.abs(seen[:, :2]) <= width[:, None] * one.half_width).all(axis=1)
+        shown |= inside & (seen[:, 2] >= one.ends[0]) & (seen[:, 2] <= one.ends[1])
+    assert shown.all() and is_outside(light) == (light.kind == "directional" or light.distance > 1)
+
+
+def test_a_narrow_spot_gives_its_map_to_its_cone() -> None:
+    view = View.of(Scene().camera, (512, 512))
+    (one,) = map_views(Light(kind="spot", cutoff=1.0, distance=3.0), view)
+    assert one.half_width == pytest.approx(np.tan(np.radians(1)), rel=1e-3)
+
+
+def test_sides_of_a_cube_are_rotations() -> None:
+    np.testing.assert_array_equal(SIDES @ SIDES.transpose(0, 2, 1), [np.eye(3)] * 6)
+    assert np.linalg.det(SIDES) == pytest.approx(1)
+    ahead = {tuple(side.T @ [0, 0, 1]) for side in SIDES}
+    assert len(ahead) == 6
+
+
+@pytest.mark.parametrize("number", [0, 1, 2, 5, 31, 192])
+def test_maps_stand_side_by_side(number: int) -> None:
+    layout = atlas([Light()] * number, None, (512, 300))
+    corners = {layout.corner(index) for index in range(number)}
+    assert len(corners) == number
+    assert all(max(x + layout.side - layout.size[0], y + layout.side - layout.size[1]) <= 0 for x, y in corners)
+    assert layout.side == (2048 if number in (0, 1, 2, 5) else layout.side) and max(layout.size) <= 8192
+
+
+def test_the_default_map_is_four_times_the_picture_at_most_4096() -> None:
+    sides = [atlas([Light()], None, size).side for size in ((512, 300), (100, 700), (4000, 10), (1, 1))]
+    assert sides == [2048, 2800, 4096, 16]
+    assert atlas([Light()], 333, (512, 512)).side == 333
+
+
+def test_maps_that_do_not_fit_are_one_sentence() -> None:
+    inside = Light(kind="point", distance=0.5)
+    with pytest.raises(
+        BadInput, match=rf"shadow\.map_size: 9000: 6 shadow maps.*give at most {TEXTURE // 3}, or fewer"
+    ):
+        atlas([inside], 9000, (512, 512))
