@@ -1,6 +1,6 @@
 """The `fakesss` command: composes the four packages. Each command imports what it needs when it runs.
 
-The commands themselves stand in `cli_study` and `cli_picture`.
+The commands themselves stand in `cli_study`, `cli_picture` and `cli_measure`.
 """
 
 import json
@@ -27,8 +27,9 @@ def commands() -> None:
 
 def main() -> None:
     """Runs the command; bad input is one sentence on standard error and exit code 2."""
+    import fakesss.cli_measure
     import fakesss.cli_picture
-    import fakesss.cli_study  # noqa: F401  (both add their commands)
+    import fakesss.cli_study  # noqa: F401  (all add their commands)
 
     try:
         sys.exit(commands(standalone_mode=False) or 0)

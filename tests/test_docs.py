@@ -7,8 +7,9 @@ from pathlib import Path
 
 import pytest
 
+import fakesss.cli_measure
 import fakesss.cli_picture
-import fakesss.cli_study  # noqa: F401  (both add their commands)
+import fakesss.cli_study  # noqa: F401  (all add their commands)
 from analysis.plan import AnalysisPlan, Comparison, Exclusions
 from fakesss.cli import commands
 from fakesss.pipeline import build
