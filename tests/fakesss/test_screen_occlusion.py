@@ -211,6 +211,15 @@ def test_it_is_left_out_with_a_reason(changes: dict[str, Any], because: str) -> 
     assert verdicts["occlusion"].kept == (scene.occlusion.method == "baked")
 
 
+@pytest.mark.parametrize("without", [{"material.ambient": 0.0}, {"light.ambient": (0, 0, 0)}], ids=str)
+def test_leaving_it_out_changes_no_byte(renderer: Renderer, without: dict[str, Any]) -> None:
+    scene = Scene(object="torus:8000", size=(64, 48)).replace({"occlusion.method": "screen-space", **without})
+    culled, forced = renderer.render(scene), renderer.render(scene, forced=frozenset({"occlusion"}))
+    ran = [{entry["name"] for entry in drawn.passes} for drawn in (culled, forced)]
+    assert "screen_occlusion" not in ran[0] and "screen_occlusion" in ran[1]
+    assert culled.image.tobytes() == forced.image.tobytes()
+
+
 def test_either_occlusion_or_the_other_is_made() -> None:
     plan = build(Scene().replace({"occlusion.method": "screen-space"})).compile(("image",))
     names = [node.name for node in plan.kept]

@@ -28,6 +28,7 @@ GOLDEN: dict[str, Scene] = {
     "as-published": BASE.replace({"style": "as published"}),
     "exact-layer": BASE.replace({"blur.enabled": False, "size": (160, 121), "supersampling": 1}),
     "light-only": BASE.replace({"material.backlight": 0.0, "object": "torus:8000"}),
+    "screen-space-occlusion": BASE.replace({"occlusion.method": "screen-space", "light.ambient": (0.6, 0.6, 0.6)}),
     "backlight-only": BASE.replace(
         {"material.ambient": 0.0, "material.diffuse_contribution": 0.0, "material.specular_contribution": 0.0}
     ),
