@@ -3,6 +3,9 @@
 const float ORIGIN = 2.0;
 const float DIAMETER = 2.0;  // of the bounding sphere, whose radius is the unit
 
+// In a triangle smaller than a pixel, interpolation runs on beyond its corners, and so out of the sphere.
+float in_sphere(float layer) { return clamp(layer, ORIGIN - 1.0, ORIGIN + 1.0); }
+
 bool is_empty(float layer) { return layer == 0.0; }
 
 float relative_thickness(float front, float second, float open_thickness) {

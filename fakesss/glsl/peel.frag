@@ -23,15 +23,16 @@ float window(float layer) { return nonlinear_depth(layer - ORIGIN + distance, cl
 #endif
 
 void main() {
+    float here = in_sphere(layer);
     float nearest = texelFetch(before, ivec2(gl_FragCoord.xy), 0).r;
 #if AS_PUBLISHED
-    bool further = window(layer) > window(nearest) + PUBLISHED_EPSILON;
+    bool further = window(here) > window(nearest) + PUBLISHED_EPSILON;
 #else
     // What looks the other way is not the layer before itself, however near it is. By rounding it may come to lie
     // before it: a triangle seen edge-on is many depths in one sample.
     bool other = BEFORE_FACES != 0 && gl_FrontFacing == (BEFORE_FACES < 0);
-    bool further = layer > nearest + (other ? -PEEL_EPSILON : PEEL_EPSILON) * DIAMETER || (other && NEAREST == 1);
+    bool further = here > nearest + (other ? -PEEL_EPSILON : PEEL_EPSILON) * DIAMETER || (other && NEAREST == 1);
 #endif
     if (is_empty(nearest) || !further) discard;
-    behind = layer;
+    behind = here;
 }

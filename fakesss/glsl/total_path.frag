@@ -6,5 +6,5 @@ out vec2 path;
 
 void main() {
     float sign = gl_FrontFacing ? -1.0 : 1.0;
-    path = vec2(sign * (layer - ORIGIN), sign);  // from the sphere's centre: small terms, small rounding
+    path = vec2(sign * (in_sphere(layer) - ORIGIN), sign);  // from the sphere's centre: small terms, small rounding
 }
