@@ -120,15 +120,29 @@ class Run:
         if isinstance(node, Bake):
             self._bake(node, inputs)
             return
-        for name, spec in node.writes.items():
-            self.live[name] = self.gpu.pool.take(spec)
-            self.lent[name] = spec
+        wanted = not set(map(self.plan.root, self.plan.targets)).isdisjoint(node.writes)
+        if node.key and not self.timed and not wanted:
+            kept = self.gpu.drawn.get((node.name, node.key(inputs)), lambda: self._kept(node, inputs))
+            self.live |= {name: texture for name, (_, texture) in kept.items()}
+            return
+        self._take(node)
         if not self.timed:
             self._draw(node, inputs)
             return
         self.queries[node.name] = self.gpu.context.query(time=True)
         with self.queries[node.name]:
             self._draw(node, inputs)
+
+    def _take(self, node: Pass) -> None:
+        for name, spec in node.writes.items():
+            self.live[name] = self.gpu.pool.take(spec)
+            self.lent[name] = spec
+
+    def _kept(self, node: Pass, inputs: Mapping[str, Any]) -> dict[str, tuple[TextureSpec, Any]]:
+        """What the pass draws now, no longer lent to this run: it outlives it."""
+        self._take(node)
+        self._draw(node, inputs)
+        return {name: (self.lent.pop(name), self.live[name]) for name in node.writes}
 
     def _bake(self, node: Bake, inputs: Mapping[str, Any]) -> None:
         key = (node.name, node.key(inputs))

@@ -42,6 +42,7 @@ class Pass:
     drawn instead of keeping the last.
     `in_place`: the uniforms and defines of a full-screen pass whose reader can compute its output itself, given the
     pass's inputs; a reader that can lists the output in `merges`.
+    Equal `key(inputs)` promise equal outputs, so what was drawn for one picture serves the next.
     """
 
     name: str
@@ -57,6 +58,7 @@ class Pass:
     add: bool = False
     in_place: Callable[[Mapping[str, Any]], tuple[dict[str, Any], dict[str, int]]] | None = None
     merges: tuple[str, ...] = ()
+    key: Callable[[Mapping[str, Any]], Hashable] | None = None
     merged: tuple["Pass", ...] = ()  # filled by `compile`
 
 

@@ -28,6 +28,8 @@ EXPLICIT_NAMES = {"libgl": "libGL.so.1", "libegl": "libEGL.so.1"}
 REFUSALS = ("create", "framebuffer is not complete")  # Mesa makes the texture and then cannot attach it
 UPLOADS_KEPT = 16  # buffers: a few meshes, so that a sweep uploads nothing twice
 
+DRAWN_KEPT = 1  # passes' outputs that the next picture may use again: large, so only the last
+
 
 @dataclass
 class Gpu:
@@ -37,11 +39,15 @@ class Gpu:
     programs: Programs = field(init=False)
     pool: TexturePool = field(init=False)
     uploads: Recent[Any] = field(init=False)
+    drawn: Recent[Any] = field(init=False)  # textures of passes with a key, {name: (spec, texture)}
 
     def __post_init__(self) -> None:
         self.programs = Programs(self.context)
         self.pool = TexturePool(self.context)
         self.uploads = Recent(UPLOADS_KEPT, dispose=lambda upload: upload.release())
+        self.drawn = Recent(
+            DRAWN_KEPT, dispose=lambda textures: [self.pool.give_back(*one) for one in textures.values()]
+        )
 
     @property
     def renderer(self) -> str:

@@ -1,10 +1,12 @@
 """What every light that casts shadows sees of the object, all maps in one texture."""
 
+from collections.abc import Hashable, Mapping
 from typing import Any
 
 from fakesss.calls import Setting
 from fakesss.frame import Frame
 from fakesss.frame_graph import Pass, TextureSpec
+from fakesss.lights import Light
 from fakesss.passes.geometry import Cull, draw_mesh
 from fakesss.passes.lights import array
 from fakesss.shadow_maps import Atlas, atlas, is_outside, map_views
@@ -18,21 +20,33 @@ def layout_of(setting: Setting) -> Atlas:
     return atlas(setting.casting, setting.scene.shadow.map_size, setting.scene.size)
 
 
+def faces_of(light: Light, setting: Setting) -> Cull:
+    """Which faces need not be drawn: a light outside a solid sees none from behind."""
+    return "back" if setting.solid and is_outside(light) else ""
+
+
 def shadow(setting: Setting) -> Pass:
     """Reads `mesh`; writes `shadow_maps` (linear depth from each light, see shadow_maps.py).
 
-    A light outside a solid sees nothing but front faces, so the others are not drawn.
+    A sweep that moves neither object, camera nor light draws them once.
     """
-    casting, layout = setting.casting, layout_of(setting)
+    layout = layout_of(setting)
+    maps = [
+        (seen.uniforms, faces_of(light, setting))
+        for light in setting.casting
+        for seen in map_views(light, setting.view)
+    ]
 
     def draw(frame: Frame) -> None:
-        maps = [(light, seen) for light in casting for seen in map_views(light, setting.view)]
-        for number, (light, seen) in enumerate(maps):
+        for number, (uniforms, cull) in enumerate(maps):
             frame.target.viewport = (*layout.corner(number), layout.side, layout.side)
-            program = frame.program("shadow.vert", "shadow.frag", seen.uniforms, {})
-            faces: Cull = "back" if setting.solid and is_outside(light) else ""
-            draw_mesh(frame, frame.inputs["mesh"], setting.view, program, [], faces)
+            program = frame.program("shadow.vert", "shadow.frag", uniforms, {})
+            draw_mesh(frame, frame.inputs["mesh"], setting.view, program, [], cull)
         frame.target.viewport = (0, 0, *layout.size)  # the target is used again
+
+    def key(inputs: Mapping[str, Any]) -> Hashable:
+        seen = tuple((*uniforms.values(), cull) for uniforms, cull in maps)
+        return inputs["mesh"].sha256, setting.view.pose, layout, seen
 
     return Pass(
         "shadow",
@@ -41,6 +55,7 @@ def shadow(setting: Setting) -> Pass:
         writes={"shadow_maps": TextureSpec(layout.size, 1)},
         depth_test=True,
         clear=(NOTHING, 0.0, 0.0, 0.0),
+        key=key,
     )
 
 
