@@ -13,10 +13,10 @@ LAYERS = ("front", "second", "surface")
 
 
 def off_edges(layers: dict[str, NDArray[Any]], margin: int = 1) -> NDArray[np.bool_]:
-    """Pixels (H, W) that are covered, with all within `margin`, and no jump of `LAYERS` or of the normal among them."""
+    """Pixels (H, W) that are covered, with all within `margin`, and no jump of any of the layers given among them."""
     side = 2 * margin + 1
     values = [(layers["front"], JUMP), (layers["second"], JUMP)]
-    values += [(layers["surface"][..., axis], TURN) for axis in range(3)]
+    values += [(layers["surface"][..., axis], TURN) for axis in range(3) if "surface" in layers]
     inside = minimum_filter(layers["front"], side, mode="constant", cval=0) > 0
     for value, most in values:
         inside &= maximum_filter(value, side) - minimum_filter(value, side) < most * margin

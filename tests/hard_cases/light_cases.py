@@ -1,6 +1,7 @@
 """Hard cases of lights."""
 
 from hard_case import Case
+from hard_meshes import obj, sheet
 
 NONE = (0.0, 0.0, 0.0)
 
@@ -71,5 +72,45 @@ LIGHTS = [
                 for turn, kind in enumerate(["point", "spot", "directional"] * 10 + ["point"])
             ]
         },
+    ),
+    Case(
+        "shadow-grazing",
+        "Light along the surface: the slope-scaled bias grows without bound.",
+        "Lit from the side, the far parts in shadow.",
+        changes={"light.shadows": True, "light.azimuth": 100.0, "light.elevation": 0.0},
+    ),
+    Case(
+        "smallest-shadow-map",
+        "16 texels for the whole object.",
+        "Coarse shadows.",
+        changes={"light.shadows": True, "shadow.map_size": 16},
+    ),
+    Case(
+        "shadow-from-within",
+        "A point light among the parts of the object sees them on all sides.",
+        "Lit from within.",
+        changes={"light.shadows": True, "light.kind": "point", "light.distance": 0.0},
+    ),
+    Case(
+        "shadow-from-the-surface",
+        "The light stands in the nearest plane of its own shadow map.",
+        "Finite; next to nothing is lit.",
+        changes={
+            "object": "sphere:2000",
+            "light.shadows": True,
+            "light.kind": "spot",
+            "light.azimuth": 0.0,
+            "light.elevation": 8.0,
+            "light.distance": 1.0,
+        },
+    ),
+    Case(
+        "shadow-on-a-sheet",
+        "The surface that casts the shadow is the one that it would fall on.",
+        "A sheet without specks.",
+        lambda: obj(sheet()),
+        ".obj",
+        {"light.shadows": True},
+        closed=False,
     ),
 ]

@@ -129,13 +129,7 @@ LAYERS = [
         changes={"layers.faces": 4},
     ),
     Case(
-        "half-a-pixel",
-        "A second layer at half the resolution of a picture of one pixel.",
-        "One colour.",
-        changes={"object": "sphere:2000", "layers.reduction": 2, "size": (1, 1), "supersampling": 1},
-    ),
-    Case(
-        "screen-occlusion-of-one-pixel",
+        "occlusion-of-one-pixel",
         "Samples around a pixel that has no neighbours.",
         "One colour.",
         changes={"occlusion.method": "screen-space", "size": (1, 1)},

@@ -30,9 +30,9 @@ SURFACES: dict[str, Callable[[], Surface]] = {
     "hollow ball": lambda: joined(ball(), reversed_winding(ball(1280, 0.8))),
     "overlapping balls": lambda: joined(ball(1280, 0.7, (-0.3, 0, 0)), ball(1280, 0.7, (0.3, 0.1, 0.2))),
 }
-# Off the edges. Rounding moves vertices by 1e-7 radii; what the rasteriser's grid makes of that is below 1e-4.
-LARGEST, MEAN = 1e-3, 1e-5  # of thickness (sphere diameters) and of linear light
-OUTLINE = 2e-3  # share of the picture's pixels that may be covered in one and not in the other
+# Off the edges: thickness in sphere diameters, linear light. The worst found are 1e-6 and 1.3e-5.
+LARGEST, MEAN = {"thickness": 1e-5, "image": 1e-4}, 1e-6
+OUTLINE = 1e-3  # share of the picture that may be covered in one and not in the other; found: none
 
 
 def scene_of(path: Path) -> Scene:
@@ -46,7 +46,7 @@ def assert_same(one: dict[str, Any], other: dict[str, Any]) -> None:
     smooth = off_edges(one) & off_edges(other)
     for name in ("thickness", "image"):
         difference = np.abs(one[name].astype(np.float64) - other[name])
-        assert difference[smooth].max(initial=0) <= LARGEST, name
+        assert difference[smooth].max(initial=0) <= LARGEST[name], name
         assert difference[smooth].mean() <= MEAN if smooth.any() else True, name
 
 
@@ -64,7 +64,7 @@ def look(renderer: Renderer, folder: Path, name: str, content: bytes) -> dict[st
     return renderer.data(scene_of(path), LAYERS)
 
 
-EXAMPLES = settings(max_examples=25, suppress_health_check=[HealthCheck.function_scoped_fixture])
+EXAMPLES = settings(suppress_health_check=[HealthCheck.function_scoped_fixture])
 
 
 @EXAMPLES
@@ -115,10 +115,9 @@ def test_the_catalogues_moved_and_scaled_objects_are_one_picture(renderer: Rende
 
 
 @pytest.mark.parametrize("name", ["inside-out", "mixed-winding"])
-def test_mended_winding_gives_the_sound_objects_bytes(renderer: Renderer, folder: Path, name: str) -> None:
-    sound, mended = (renderer.render(CASES[case].scene(folder)).image for case in ("soup", name))
-    assert np.abs(sound - mended).max() <= 1e-6 or name == "mixed-winding"
-    assert np.abs(sound - mended).mean() <= 1e-5
+def test_mended_winding_gives_the_sound_object(renderer: Renderer, folder: Path, name: str) -> None:
+    scenes = [CASES[case].scene(folder).replace({"supersampling": 1}) for case in ("soup", name)]
+    assert_same(*[renderer.data(scene, LAYERS) for scene in scenes])
 
 
 @pytest.mark.parametrize("case", DRAWN.values(), ids=str)
