@@ -27,18 +27,16 @@ def terms(scene: Scene) -> list[Floats]:
 
 
 def nearest_gain(light: Any) -> float:
-    """The least attenuation that any point of the sphere can have: 1 / (kc + kl d + kq d^2)."""
+    """The most that any point of the sphere can get: 1 / (kc + kl d + kq d^2), held to a millionfold."""
     if light.kind == "directional":
         return 1.0
     distance = max(light.distance - 1, 0.0)
-    denominator = float(np.dot(light.attenuation, (1, distance, distance**2)))
-    return 1 / denominator if denominator > 0 else np.inf
+    return float(1 / max(np.dot(light.attenuation, (1, distance, distance**2)), 1e-6))
 
 
 def range_of(scene: Scene) -> tuple[Floats, Floats]:
     """The darkest and the brightest linear RGB (3,) that a covered sample may have."""
-    with np.errstate(invalid="ignore"):
-        each = scene.exposure * np.nan_to_num(np.array(terms(scene)), nan=0.0, posinf=np.inf, neginf=-np.inf)
+    each = scene.exposure * np.array(terms(scene))
     low, high = np.minimum(each, 0).sum(axis=0), np.maximum(each, 0).sum(axis=0)
     return (np.zeros(3), np.clip(high, 0, 1)) if scene.style == "as published" else (low, high)
 

@@ -51,7 +51,7 @@ def test_a_mesh_of_so_many_triangles(tmp_path: Path, faces: int, written, suffix
     exact = ((leave - entry) * -(directions @ view.rotation[2]) / 2).reshape(256, 256)
     error = np.abs(layers["thickness"] - exact)[~np.isnan(exact)]
     assert np.isfinite(layers["image"]).all()
-    assert np.median(error) < 1e-5 and np.percentile(error, 99) < 1e-3
+    assert np.median(error) < 8 / faces + 1e-6 and np.percentile(error, 99) < 1e-3  # chords of a circle
 
 
 @pytest.mark.parametrize("side", [512, pytest.param(4096, marks=[pytest.mark.long, pytest.mark.timeout(900)])])
