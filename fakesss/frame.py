@@ -129,7 +129,7 @@ class Run:
         if not self.timed:
             self._draw(node, inputs)
             return
-        self.queries[node.name] = self.gpu.context.query(time=True)
+        self.queries[node.name] = self.gpu.timer(node.name)
         with self.queries[node.name]:
             self._draw(node, inputs)
 

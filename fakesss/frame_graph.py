@@ -7,6 +7,7 @@ it, so a cycle cannot be written down. Declaring and compiling need no GPU.
 
 from collections.abc import Callable, Hashable, Iterable, Mapping
 from dataclasses import dataclass, field, replace
+from functools import partial
 from typing import Any
 
 
@@ -107,8 +108,12 @@ class Verdict:
 
     node: Node
     kept: bool
-    because: str
+    why: Callable[[], str] = field(compare=False)  # put into words only when asked
     merged: bool = False  # kept, but computed by its reader
+
+    @property
+    def because(self) -> str:
+        return self.why()
 
 
 @dataclass(frozen=True)
@@ -172,9 +177,9 @@ class FrameGraph:
         kept = [node for node in nodes if not wanted.isdisjoint(node.writes)]
         culled = [node for node in nodes if wanted.isdisjoint(node.writes)]
         verdicts = [
-            Verdict(node, False, why_culled(node, kept, culled))
+            Verdict(node, False, partial(why_culled, node, kept, culled))
             if wanted.isdisjoint(node.writes)
-            else Verdict(node, True, why_kept(node, kept, targets))
+            else Verdict(node, True, partial(why_kept, node, kept, targets))
             for node in nodes
         ]
         aliases = {node.name: node.chosen for node in nodes if isinstance(node, Choice)}
@@ -240,7 +245,7 @@ def merged(verdicts: list[Verdict], targets: tuple[str, ...]) -> list[Verdict]:
         reads = dict.fromkeys((*(name for name in reader.reads if name not in node.writes), *node.reads))
         united = replace(reader, reads=tuple(reads), merged=(*reader.merged, node))
         verdicts[places[0]] = replace(verdicts[places[0]], node=united)
-        verdicts[index] = replace(verdict, merged=True, because=f"computed by {reader.name}, its only reader")
+        verdicts[index] = replace(verdict, merged=True, why=partial(str, f"computed by {reader.name}, its only reader"))
     return verdicts
 
 

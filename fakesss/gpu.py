@@ -10,13 +10,14 @@ forked gets its own. Use the "spawn" start method for worker processes, since Me
 import os
 import sys
 import threading
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
 from dataclasses import dataclass, field
 from typing import Any
 
 import moderngl
 
+from fakesss.frame_graph import TextureSpec
 from fakesss.problem import BadInput
 from fakesss.recent import Recent
 from fakesss.shader_source import Programs
@@ -39,15 +40,24 @@ class Gpu:
     programs: Programs = field(init=False)
     pool: TexturePool = field(init=False)
     uploads: Recent[Any] = field(init=False)
+    timers: dict[str, Any] = field(default_factory=dict)
     drawn: Recent[Any] = field(init=False)  # textures of passes with a key, {name: (spec, texture)}
 
     def __post_init__(self) -> None:
         self.programs = Programs(self.context)
         self.pool = TexturePool(self.context)
         self.uploads = Recent(UPLOADS_KEPT, dispose=lambda upload: upload.release())
-        self.drawn = Recent(
-            DRAWN_KEPT, dispose=lambda textures: [self.pool.give_back(*one) for one in textures.values()]
-        )
+        self.drawn = Recent(DRAWN_KEPT, dispose=self._forget)
+
+    def _forget(self, textures: Mapping[str, tuple[TextureSpec, Any]]) -> None:
+        for spec, texture in textures.values():
+            self.pool.give_back(spec, texture)
+
+    def timer(self, name: str) -> Any:
+        """The timer query of this name: moderngl cannot release one, so each is made once."""
+        if name not in self.timers:
+            self.timers[name] = self.context.query(time=True)
+        return self.timers[name]
 
     @property
     def renderer(self) -> str:
