@@ -2,6 +2,7 @@
 
 import tempfile
 from pathlib import Path
+from typing import Any
 
 from PIL import Image, ImageDraw, ImageFont
 
@@ -58,7 +59,45 @@ def views(width: int = 1290) -> Image.Image:
     return drawn.resize((width, round(width * drawn.height / drawn.width)), Image.Resampling.LANCZOS)
 
 
+SHADOWS = {
+    "material.diffuse_contribution": 0.7,
+    "material.backlight": 0.6,
+    "light.azimuth": -50.0,
+    "light.elevation": 30.0,
+    "light.shadows": True,
+}
+SOFT = {"shadow.filter": "disc", "shadow.radius": 0.008, "shadow.samples": 16}
+FURTHER: list[dict[str, Any]] = [
+    {"azimuth": 60.0, "elevation": 20.0, "diffuse": (0.1, 0.25, 0.8), "ambient": (0, 0, 0), "shadows": True},
+    {"kind": "spot", "azimuth": 0.0, "elevation": 70.0, "cutoff": 12.0, "diffuse": (0.5, 0.9, 0.6), "shadows": True},
+]
+LIGHTS: dict[str, dict[str, Any]] = {
+    "directional, pcf": {},
+    "spot, pcf": {"light.kind": "spot", "light.cutoff": 10.0, "light.azimuth": -35.0, "light.elevation": 45.0},
+    "near point, disc": {"light.kind": "point", "light.distance": 1.1, "light.attenuation": (0.2, 0, 0.8), **SOFT},
+    "three lights, disc": {
+        "material.diffuse": (0.7, 0.6, 0.5),
+        "material.backlight": 0.25,
+        "light.diffuse": (1.0, 0.5, 0.2),
+        "lights": FURTHER,
+        **SOFT,
+    },
+}
+
+
+def lights(edge: int = 260) -> Image.Image:
+    """Kinds of lights and filters of shadows on the default object."""
+    base = Scene(size=(edge, edge)).replace(SHADOWS)
+    drawn = [(name, render(base.replace(changes))) for name, changes in LIGHTS.items()]
+    return sheet([(name, Image.fromarray(to_8bit(image[..., :3]))) for name, image in drawn], 4)
+
+
 if __name__ == "__main__":
-    for name, page in (("thesis-stimuli", thesis_stimuli()), ("objects", objects()), ("views", views())):
+    for name, page in (
+        ("thesis-stimuli", thesis_stimuli()),
+        ("objects", objects()),
+        ("views", views()),
+        ("lights", lights()),
+    ):
         page.save(HERE / f"{name}.png", optimize=True)
     draw_graph(compiled(Scene().replace({"light.ambient": (0, 0, 0)})), HERE / "graph.svg")

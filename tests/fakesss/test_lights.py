@@ -12,11 +12,10 @@ from picture_scenes import dark
 from fakesss import illumination
 from fakesss.camera import View
 from fakesss.frame_graph import Pass
-from fakesss.lights import MOST_LIGHTS, Light
+from fakesss.lights import MOST_LIGHTS
 from fakesss.pipeline import build
-from fakesss.problem import BadInput
 from fakesss.renderer import Renderer
-from fakesss.scene import Scene, check_path
+from fakesss.scene import Scene
 
 UNLIT = {"diffuse": (0, 0, 0), "specular": (0, 0, 0)}
 CASTING = {"light.shadows": True}
@@ -83,47 +82,6 @@ def test_a_culled_shadow_map_says_why(changes: dict[str, Any], because: str) -> 
 )
 def test_depth_is_read_only_where_place_matters(changes: dict[str, Any], reads: bool) -> None:
     assert ("front" in shade(Scene().replace(changes)).reads) == reads
-
-
-def test_paths_of_further_lights() -> None:
-    scene = Scene().replace({"lights": [{}, {"kind": "spot"}]})
-    assert scene.replace({"lights.1.diffuse": (1, 2, 3)}).at("lights.1.diffuse") == (1, 2, 3)
-    assert scene.replace({"lights.0.kind": "point"}).lights[1] == scene.lights[1]
-
-
-@pytest.mark.parametrize(
-    ("path", "sentence"),
-    [
-        ("lights.2.diffuse", 'path "lights.2.diffuse": counts from lights.0, and the scene has 2 of them; add a'),
-        ("lights.1.difuse", 'path "lights.1.difuse" is no scene field; did you mean "lights.1.diffuse"?'),
-        ("lights.-1.diffuse", 'did you mean "lights.'),
-        ("light.0.diffuse", 'did you mean "lights.0.diffuse"?'),
-        ("lights.0", 'path "lights.0" is no scene field'),
-    ],
-)
-def test_wrong_paths_name_the_nearest(path: str, sentence: str) -> None:
-    with pytest.raises(BadInput) as raised:
-        check_path(path, "study.toml", Scene(lights=(Light(), Light())))
-    assert str(raised.value).startswith("study.toml: ") and sentence in str(raised.value)
-
-
-def test_no_further_light_at_all_is_said() -> None:
-    with pytest.raises(BadInput, match=r"counts from lights\.0, and the scene has none; add a \[\[lights\]\] table"):
-        Scene().replace({"lights.0.diffuse": (1, 1, 1)})
-
-
-@pytest.mark.parametrize(
-    ("lights", "sentence"),
-    [
-        ([{}] * MOST_LIGHTS, "lights: .*at most 31"),
-        ([{"attenuation": (0, 0, 0)}], r"lights\[1\]: attenuation \(0, 0, 0\) divides by zero"),
-        ([{"cutoff": 0.0}], r"lights\[1\]\.cutoff: 0\.0: must be >= 0\.1"),
-        ([{"kind": "area"}], r"lights\[1\]\.kind: 'area': must be 'directional', 'point' or 'spot'"),
-    ],
-)
-def test_lights_that_cannot_be(lights: list[dict[str, Any]], sentence: str) -> None:
-    with pytest.raises(BadInput, match=sentence):
-        Scene().replace({"lights": lights})
 
 
 def expected(renderer: Renderer, scene: Scene) -> tuple[NDArray[Any], NDArray[np.bool_]]:

@@ -1,10 +1,12 @@
 import json
 import re
 from pathlib import Path
+from typing import Any
 
 import pytest
 import tomli_w
 
+from fakesss.lights import MOST_LIGHTS, Light
 from fakesss.problem import BadInput
 from fakesss.scene import Scene, check_path, scene_paths
 
@@ -72,3 +74,44 @@ def test_the_documented_defaults_are_the_defaults() -> None:
         for part in path.split("."):
             value = value[part]
         assert documented[path] == ("" if value is None else json.dumps(value)), path
+
+
+def test_paths_of_further_lights() -> None:
+    scene = Scene().replace({"lights": [{}, {"kind": "spot"}]})
+    assert scene.replace({"lights.1.diffuse": (1, 2, 3)}).at("lights.1.diffuse") == (1, 2, 3)
+    assert scene.replace({"lights.0.kind": "point"}).lights[1] == scene.lights[1]
+
+
+@pytest.mark.parametrize(
+    ("path", "sentence"),
+    [
+        ("lights.2.diffuse", 'path "lights.2.diffuse": counts from lights.0, and the scene has 2 of them; add a'),
+        ("lights.1.difuse", 'path "lights.1.difuse" is no scene field; did you mean "lights.1.diffuse"?'),
+        ("lights.-1.diffuse", 'did you mean "lights.'),
+        ("light.0.diffuse", 'did you mean "lights.0.diffuse"?'),
+        ("lights.0", 'path "lights.0" is no scene field'),
+    ],
+)
+def test_wrong_paths_name_the_nearest(path: str, sentence: str) -> None:
+    with pytest.raises(BadInput) as raised:
+        check_path(path, "study.toml", Scene(lights=(Light(), Light())))
+    assert str(raised.value).startswith("study.toml: ") and sentence in str(raised.value)
+
+
+def test_no_further_light_at_all_is_said() -> None:
+    with pytest.raises(BadInput, match=r"counts from lights\.0, and the scene has none; add a \[\[lights\]\] table"):
+        Scene().replace({"lights.0.diffuse": (1, 1, 1)})
+
+
+@pytest.mark.parametrize(
+    ("lights", "sentence"),
+    [
+        ([{}] * MOST_LIGHTS, "lights: .*at most 31"),
+        ([{"attenuation": (0, 0, 0)}], r"lights\[1\]: attenuation \(0, 0, 0\) divides by zero"),
+        ([{"cutoff": 0.0}], r"lights\[1\]\.cutoff: 0\.0: must be >= 0\.1"),
+        ([{"kind": "area"}], r"lights\[1\]\.kind: 'area': must be 'directional', 'point' or 'spot'"),
+    ],
+)
+def test_lights_that_cannot_be(lights: list[dict[str, Any]], sentence: str) -> None:
+    with pytest.raises(BadInput, match=sentence):
+        Scene().replace({"lights": lights})

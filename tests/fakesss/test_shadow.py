@@ -12,12 +12,10 @@ from scipy.ndimage import maximum_filter, minimum_filter
 
 from fakesss import illumination
 from fakesss.camera import View
-from fakesss.lights import Light
-from fakesss.problem import BadInput
 from fakesss.ray_casting import Caster
 from fakesss.renderer import Renderer
 from fakesss.scene import Scene
-from fakesss.shadow_maps import REACH, SIDES, TEXTURE, MapView, atlas, depth_slope, is_outside, map_views
+from fakesss.shadow_maps import REACH, MapView, atlas, depth_slope, map_views
 from fakesss.shapes import load_object
 
 LIT = {"light__diffuse": (1, 1, 1), "material__diffuse": (1, 1, 1), "material__diffuse_contribution": 1.0}
@@ -231,67 +229,6 @@ def test_a_picture_with_shadows_is_the_same_bytes_every_time(renderer: Renderer)
     first = renderer.render(scene).image.tobytes()
     renderer.render(scene.replace({"light.kind": "point", "light.distance": 0.5, "shadow.map_size": 64}))
     assert renderer.render(scene).image.tobytes() == first
-
-
-LIGHTS = [
-    Light(),
-    Light(kind="point", distance=1e4),
-    Light(kind="point", distance=1.2),
-    Light(kind="spot", cutoff=90.0),
-    Light(kind="point", distance=1.01),
-    Light(kind="point", distance=0.0),
-    Light(kind="spot", cutoff=80.0, distance=0.5),
-]
-
-
-@pytest.mark.parametrize("light", LIGHTS, ids=str)
-def test_the_maps_of_a_light_show_the_whole_sphere(light: Light) -> None:
-    view = View.of(Scene().camera, (512, 512))
-    directions = np.random.default_rng(0).normal(size=(2000, 3))
-    points = directions / np.linalg.norm(directions, axis=1, keepdims=True)
-    shown = np.zeros(len(points), bool)
-    for one in map_views(light, view):
-        seen = points @ one.turn.T + one.centre
-        width = one.width[0] + one.width[1] * seen[:, 2]
-        inside = (np.abs(seen[:, :2]) <= width[:, None] * one.half_width).all(axis=1)
-        shown |= inside & (seen[:, 2] >= one.ends[0]) & (seen[:, 2] <= one.ends[1])
-    assert shown.all() and is_outside(light) == (light.kind == "directional" or light.distance > 1)
-
-
-def test_a_narrow_spot_gives_its_map_to_its_cone() -> None:
-    view = View.of(Scene().camera, (512, 512))
-    (one,) = map_views(Light(kind="spot", cutoff=1.0, distance=3.0), view)
-    assert one.half_width == pytest.approx(np.tan(np.radians(1)), rel=1e-3)
-
-
-def test_sides_of_a_cube_are_rotations() -> None:
-    np.testing.assert_array_equal(SIDES @ SIDES.transpose(0, 2, 1), [np.eye(3)] * 6)
-    assert np.linalg.det(SIDES) == pytest.approx(1)
-    ahead = {tuple(side.T @ [0, 0, 1]) for side in SIDES}
-    assert len(ahead) == 6
-
-
-@pytest.mark.parametrize("number", [0, 1, 2, 5, 31, 192])
-def test_maps_stand_side_by_side(number: int) -> None:
-    layout = atlas([Light()] * number, None, (512, 300))
-    corners = {layout.corner(index) for index in range(number)}
-    assert len(corners) == number
-    assert all(max(x + layout.side - layout.size[0], y + layout.side - layout.size[1]) <= 0 for x, y in corners)
-    assert layout.side == (2048 if number in (0, 1, 2, 5) else layout.side) and max(layout.size) <= 8192
-
-
-def test_the_default_map_is_four_times_the_picture_at_most_4096() -> None:
-    sides = [atlas([Light()], None, size).side for size in ((512, 300), (100, 700), (4000, 10), (1, 1))]
-    assert sides == [2048, 2800, 4096, 16]
-    assert atlas([Light()], 333, (512, 512)).side == 333
-
-
-def test_maps_that_do_not_fit_are_one_sentence() -> None:
-    inside = Light(kind="point", distance=0.5)
-    with pytest.raises(
-        BadInput, match=rf"shadow\.map_size: 9000: 6 shadow maps.*give at most {TEXTURE // 3}, or fewer"
-    ):
-        atlas([inside], 9000, (512, 512))
 
 
 @pytest.mark.gl
