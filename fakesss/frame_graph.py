@@ -262,7 +262,7 @@ def why_culled(node: Node, kept: list[Node], culled: list[Node]) -> str:
     """Which settings keep the others from reading what the node writes."""
     reasons = [
         f"not read by {other.name}: {why}"
-        for other in kept
+        for other in (*kept, *culled)
         for resource, why in other.unread.items()
         if resource in node.writes
     ]
