@@ -1,5 +1,6 @@
 """Lights of every kind: what a scene calls for, equation 3.6 summed over them, limits, and what must stay finite."""
 
+from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -7,7 +8,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 from numpy.typing import NDArray
-from picture_scenes import dark
+from picture_scenes import dark, sheet_file
 
 from fakesss import illumination
 from fakesss.camera import View
@@ -163,6 +164,7 @@ def test_inverse_square(renderer: Renderer) -> None:
     np.testing.assert_allclose(top, 0.24 * 0.13 * np.array([4, 1, 0.25]), rtol=2e-3)
 
 
+ON_SURFACE: dict[str, Any] = {"light__distance": 0.0, "light__diffuse": (1, 1, 1)}
 HARD: list[dict[str, Any]] = [
     {"kind": "point", "distance": 0.0, "attenuation": (0, 0, 1)},
     {"kind": "spot", "distance": 0.0, "falloff": "linear"},
@@ -183,6 +185,20 @@ HARD: list[dict[str, Any]] = [
 def test_every_pixel_is_finite(renderer: Renderer, light: dict[str, Any], shadows: bool) -> None:
     scene = Scene(object="torus:4000", size=(48, 40)).replace({"lights": [{**light, "shadows": shadows}]})
     assert renderer.render(scene).non_finite == 0
+
+
+@pytest.mark.gl
+@pytest.mark.parametrize("kind", ["point", "spot"])
+def test_a_light_exactly_on_the_surface_is_finite(renderer: Renderer, tmp_path: Path, kind: str) -> None:
+    """At distance 0 there is no direction to it, and so no light; a little farther it is bright but bounded.
+
+    Between, the vector to the light grows from 0 to unit length, and a spot's cone counts its shortness as an angle.
+    """
+    scene = dark(object=sheet_file(tmp_path), size=(1, 1), camera__elevation=0.0, light__azimuth=0.0, **ON_SURFACE)
+    scene = scene.replace({"light.kind": kind, "light.attenuation": (0, 0, 1), "light.elevation": 0.0})
+    levels = [renderer.render(scene.replace({"light.distance": d})).image[0, 0, 1] for d in (0.0, 1e-4, 1e-3, 1e-2)]
+    reflected = 0.24 * 0.13
+    np.testing.assert_allclose(levels, reflected * np.array([0, 1e5 if kind == "point" else 0, 1e6, 1e4]), rtol=1e-4)
 
 
 @pytest.mark.gl
