@@ -5,6 +5,7 @@ from pathlib import Path
 import pytest
 
 from fakesss.problem import BadInput
+from stimuli.design import stimuli_of
 from stimuli.study import Study
 from stimuli.template import template_names, write_template
 
@@ -69,6 +70,10 @@ def test_an_unknown_template_names_the_nearest(tmp_path: Path) -> None:
         ('title = "x"\n' + FACTOR.replace("18", "inf"), "level inf must be a finite number"),
         ('title = "x"\n' + FACTOR.replace("18", "1979-05-27"), "level '1979-05-27': must be a valid number"),
         ('title = "x"\n' + FACTOR.replace('"thickness"', '"=thickness"'), "would be a formula in a spreadsheet"),
+        (
+            'title = "x"\n[[scene.lights]]\n[[factor]]\nname = "fill"\npath = "lights.1.azimuth"\nlevels = [0, 90]\n',
+            'factor "fill": path "lights.1.azimuth": counts from lights.0, and the scene has 1 of them',
+        ),
         ('title = "x"\n', "study.toml: nothing to show: add a [[factor]]"),
         ('title = "x\n', "not valid TOML"),
     ],
@@ -83,3 +88,10 @@ def test_bad_input_gets_one_sentence(tmp_path: Path, text: str, sentence: str) -
 def test_no_study_file_says_how_to_make_one(tmp_path: Path) -> None:
     with pytest.raises(BadInput, match="make one with `fakesss new"):
         Study.load(tmp_path)
+
+
+def test_a_factor_may_vary_a_further_light(tmp_path: Path) -> None:
+    factor = '[[factor]]\nname = "fill"\npath = "lights.0.diffuse"\nlevels = [[0, 0, 0], [0.5, 0.5, 1]]\n'
+    study = load(tmp_path, f'title = "x"\n[[scene.lights]]\nkind = "spot"\n{factor}')
+    scenes = {one.scene.lights[0].diffuse for one in stimuli_of(study) if one.scene}
+    assert scenes == {(0, 0, 0), (0.5, 0.5, 1)}
