@@ -18,11 +18,12 @@ import embreex
 import numpy as np
 from numpy.typing import NDArray
 
-from fakesss.hemisphere import BLOCK, along_curve, even_directions, mean_over_hemisphere
+from fakesss.hemisphere import BLOCK, even_directions, mean_over_hemisphere
 from fakesss.mesh import Mesh
 from fakesss.occlusion import ray_origins
 from fakesss.ray_casting import Caster
 from fakesss.shapes import load_object
+from fakesss.space_order import along_curve
 
 FACES = (4_000, 30_000, 60_000, 100_000, 120_000, 240_000)
 BATCHES = 20  # given to a thread at once

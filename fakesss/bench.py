@@ -20,7 +20,7 @@ from fakesss.colour import to_8bit
 from fakesss.direct_light import DirectLight
 from fakesss.frame import Run
 from fakesss.frame_graph import Plan
-from fakesss.hemisphere import along_curve, even_directions
+from fakesss.hemisphere import even_directions
 from fakesss.mesh import Mesh
 from fakesss.occlusion import bake_occlusion, cast_rays, ray_origins
 from fakesss.pipeline import build
@@ -28,6 +28,7 @@ from fakesss.ray_casting import Caster
 from fakesss.renderer import PICTURE, Renderer, shared_renderer
 from fakesss.scene import Scene
 from fakesss.solidity import is_solid
+from fakesss.space_order import along_curve
 
 FACES = (4_000, 30_000, 60_000, 100_000, 120_000, 240_000)
 SIZE = (512, 512)

@@ -14,6 +14,8 @@ import numpy as np
 from numpy.typing import NDArray
 from tqdm import tqdm
 
+from fakesss.space_order import along_curve
+
 Floats = NDArray[np.float64]
 Floats32 = NDArray[np.float32]
 Sampling = Literal["cosine", "uniform"]
@@ -93,14 +95,3 @@ def weighed(
             reach[:] = answer(origins, direction[None], reach)
         total += np.multiply(weight, ray, out=ray).sum(axis=0)
     return total, weights, cast
-
-
-def along_curve(points: Floats32) -> NDArray[np.int64]:
-    """The order (N,) of points (N, 3) along Morton's curve (1966): what lies together in it lies together in space.
-
-    Rays from neighbours meet the same part of the hierarchy while it is still in the cache.
-    """
-    cells = ((points + 1.5) / 3 * 1023).clip(0, 1023).astype(np.int64)
-    for shift, mask in ((16, 0x30000FF), (8, 0x300F00F), (4, 0x30C30C3), (2, 0x9249249)):
-        cells = (cells | cells << shift) & mask
-    return np.argsort(cells @ np.array([1, 2, 4]), kind="stable")

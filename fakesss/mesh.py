@@ -16,6 +16,7 @@ from numpy.typing import NDArray
 from fakesss import mesh_repair, polygons, vertex_normals
 from fakesss.mesh_slivers import without_slivers
 from fakesss.problem import BadInput
+from fakesss.space_order import in_space_order
 
 Floats = NDArray[np.float64]
 Floats32 = NDArray[np.float32]
@@ -129,6 +130,7 @@ def mesh_from_triangles(positions: Floats, faces: NDArray[np.integer[Any]], sour
     faces32 = without_slivers(single, faces32, repairs)
     if not len(faces32):
         raise BadInput(f"{source}: all corners lie on lines, so there is no surface; export it again")
+    single, faces32 = in_space_order(single, faces32)
     watertight = mesh_repair.is_closed(faces32)
     if not watertight:
         repairs.append("The surface is open or not orientable; it is drawn by the policy for open surfaces.")

@@ -4,8 +4,8 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from picture_scenes import dark, sheet_file
 from numpy.typing import NDArray
+from picture_scenes import dark, sheet_file
 from scipy.ndimage import binary_erosion
 
 from fakesss.hard_edges import hard_edges
@@ -103,7 +103,7 @@ def test_a_coarser_second_layer_is_near_the_exact_one(renderer: Renderer) -> Non
         renderer.data(scene.replace({"layers.faces": faces}), ("thickness",))["thickness"] for faces in (None, 4000)
     )
     difference = np.abs(exact - coarse)
-    assert 0 < difference.max() and np.percentile(difference[exact > 0.02], 99) < 5e-3
+    assert difference.max() > 0 and np.percentile(difference[exact > 0.02], 99) < 5e-3
 
 
 @pytest.mark.parametrize("target", ["thickness", "front", "second", "blurred_thickness"])
