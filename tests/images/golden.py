@@ -29,6 +29,16 @@ GOLDEN: dict[str, Scene] = {
     "exact-layer": BASE.replace({"blur.enabled": False, "size": (160, 121), "supersampling": 1}),
     "light-only": BASE.replace({"material.backlight": 0.0, "object": "torus:8000"}),
     "screen-space-occlusion": BASE.replace({"occlusion.method": "screen-space", "light.ambient": (0.6, 0.6, 0.6)}),
+    "shadows": BASE.replace({"light.shadows": True, "light.azimuth": -70.0, "material.diffuse_contribution": 0.3}),
+    "lights": BASE.replace(
+        {
+            "shadow.filter": "disc",
+            "lights": [
+                {"kind": "point", "azimuth": 60.0, "distance": 1.1, "attenuation": (0.2, 0, 1), "shadows": True},
+                {"kind": "spot", "elevation": 80.0, "cutoff": 15.0, "ambient": (0, 0, 0), "diffuse": (0, 1, 3)},
+            ],
+        }
+    ),
     "backlight-only": BASE.replace(
         {"material.ambient": 0.0, "material.diffuse_contribution": 0.0, "material.specular_contribution": 0.0}
     ),
