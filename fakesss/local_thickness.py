@@ -20,14 +20,13 @@ from numpy.typing import NDArray
 from fakesss import cache
 from fakesss.hemisphere import mean_over_hemisphere
 from fakesss.mesh import Mesh
-from fakesss.occlusion import ray_origins
 from fakesss.vertex_normals import face_normals
 
 Floats = NDArray[np.float64]
 Floats32 = NDArray[np.float32]
 FirstFace = Callable[[Floats32, Floats32], NDArray[np.int32]]  # as `Caster.first_face`
 
-VERSION = 1  # raised whenever the values change, so that cached ones are made again
+VERSION = 2  # raised whenever the values change, so that cached ones are made again
 CLEARANCES = (5e-5, 5e-6, 5e-7)  # from the vertex to where its rays start, in sphere radii; the last is 8 roundings
 LONGEST = np.float32(4)  # sphere radii; two points of the object are at most 2 apart
 
@@ -73,29 +72,44 @@ def cast_inwards(mesh: Mesh, rays: int, reach: float) -> tuple[Floats32, int]:
     origins, inside = inner_origins(mesh, caster.first_face)
     mean, cast = mean_over_hemisphere(origins, -mesh.normals, rays, "cosine", length, "local thickness")
     # with very few rays a vertex may have none below it
-    return np.where(inside, np.nan_to_num(mean) / 2, 0).astype(np.float32), cast
+    values = np.nan_to_num(mean) / 2
+    values[~inside] = mean_of_neighbours(mesh, values, inside)[~inside]
+    return values.astype(np.float32), cast
+
+
+def mean_of_neighbours(mesh: Mesh, values: Floats, known: NDArray[np.bool_]) -> Floats:
+    """For each vertex the mean of `values` (V,) over those of its neighbours that are `known` (V,), 0 without any.
+
+    Where a surface runs through itself at a vertex it has no inside, and 0 would show as a spot.
+    """
+    total, count = np.zeros(len(values)), np.zeros(len(values))
+    for corner, other in ((0, 1), (1, 2), (2, 0), (1, 0), (2, 1), (0, 2)):
+        here, there = mesh.faces[:, corner], mesh.faces[:, other]
+        total += np.bincount(here, values[there] * known[there], len(values))
+        count += np.bincount(here, known[there], len(values))
+    return np.divide(total, count, out=np.zeros(len(values)), where=count > 0)
 
 
 def inner_origins(mesh: Mesh, first_face: FirstFace) -> tuple[Floats32, NDArray[np.bool_]]:
-    """Where each vertex's rays start (V, 3), and whether that lies inside (V,).
+    """Where each vertex's rays start (V, 3), and whether that lies inside (V,): just under one of its own triangles.
 
-    The largest of `CLEARANCES` that stays inside is taken: a plate may be thinner than it. A start is inside if the way
-    to one of the vertex's own triangles first meets a surface from behind. None is at an edge like a knife's, where
-    the thickness is 0, and at a vertex of no triangle.
+    The vertex normal would not do: where triangles are crumpled it may point out of the object both ways. The largest
+    of `CLEARANCES` that stays inside is taken, since a plate may be thinner than it: the way back to the triangle first
+    meets a surface from behind. None does at the edge of a knife, where a surface runs through itself, or without one.
     """
     own, towards = own_triangles(mesh)
     normals = face_normals(mesh.positions, mesh.faces)
+    length = np.sqrt((towards**2).sum(axis=1, keepdims=True))
     origins = mesh.positions.copy()
     inside = np.zeros(len(origins), bool)
     for clearance in CLEARANCES:
-        start = ray_origins(mesh, -clearance)
         left = np.flatnonzero(~inside & (own >= 0))
-        length = np.sqrt((towards[left] ** 2).sum(axis=1, keepdims=True))
-        aim = mesh.positions[left] + towards[left] * np.minimum(0.1, clearance / np.maximum(length, 1e-12))
-        way = aim - start[left]
-        face = first_face(start[left], way.astype(np.float32))
-        found = left[(face >= 0) & ((normals[face] * way).sum(axis=1) > 0)]
-        origins[found], inside[found] = start[found], True
+        aside = towards[left] * np.minimum(0.1, clearance / np.maximum(length[left], 1e-12))
+        start = (mesh.positions[left] + aside - clearance * normals[own[left]]).astype(np.float32)
+        back = normals[own[left]]
+        face = first_face(start, back.astype(np.float32))
+        found = (face >= 0) & ((normals[face] * back).sum(axis=1) > 0)
+        origins[left[found]], inside[left[found]] = start[found], True
     return origins, inside
 
 

@@ -48,11 +48,10 @@ def bake_occlusion(mesh: Mesh, rays: int = 320, sampling: Sampling = "cosine") -
     return Baked(arrays["values"], rays, cast, time.perf_counter() - started, cached)
 
 
-def ray_origins(mesh: Mesh, height: float = CLEARANCE) -> Floats32:
-    """Where each vertex's rays start (V, 3): `height` sphere radii above the surface, below it where that is negative.
+def ray_origins(mesh: Mesh) -> Floats32:
+    """Where each vertex's rays start (V, 3): clear of the surface, and drawn from a border or a crease inwards.
 
-    They are drawn as far from a border or a crease inwards. Without that, a vertex in the corner of a room starts on
-    the next wall and looks through it.
+    Without the second, a vertex in the corner of a room starts on the next wall and looks through it.
     """
     corners = mesh.positions[mesh.faces].astype(np.float64)
     middle = corners.mean(axis=1)
@@ -65,8 +64,8 @@ def ray_origins(mesh: Mesh, height: float = CLEARANCE) -> Floats32:
     # along the surface only: on a curved one the neighbours lie below the vertex
     inward -= mesh.normals * (inward * mesh.normals).sum(axis=1, keepdims=True)
     length = np.sqrt((inward**2).sum(axis=1, keepdims=True))
-    inward *= np.minimum(0.1, abs(height) / np.maximum(length, 1e-12))
-    return (mesh.positions + height * mesh.normals + inward).astype(np.float32)
+    inward *= np.minimum(0.1, CLEARANCE / np.maximum(length, 1e-12))
+    return (mesh.positions + CLEARANCE * mesh.normals + inward).astype(np.float32)
 
 
 def cast_rays(mesh: Mesh, rays: int, sampling: Sampling) -> tuple[Floats32, int]:

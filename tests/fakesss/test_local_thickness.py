@@ -139,6 +139,12 @@ def test_neither_scale_nor_place_nor_order_matters() -> None:
     np.testing.assert_allclose(cast_inwards(shuffled, 64, 0.5)[0], values[order], atol=1e-5)
 
 
+def test_no_spots_where_triangles_are_crumpled() -> None:
+    """A coarse figure runs through itself at three vertices, which have no inside."""
+    values, _ = cast_inwards(built_in("figure", 4000), 64, 0.5)
+    assert values.min() > 0.05 * values.mean()
+
+
 def test_edges_are_thin_and_nothing_exceeds_the_reach() -> None:
     mesh = mesh_from_surface(*box(2_000))
     values, _ = cast_inwards(mesh, 320, 0.2)
