@@ -15,26 +15,15 @@ SCREEN_OCCLUSION = ("screen_occlusion",)
 
 
 def shade(setting: Setting) -> Pass:
-    """Reads `front`, `surface` and one thickness; writes `shaded` (linear RGB over the background, 1 where covered).
+    """Reads `surface`, one thickness, and what else the scene calls for: `front` where place matters, occlusion, shadows.
 
+    Writes `shaded` (linear RGB over the background, 1 where covered).
     With `alpha` the background is black: what is added up for a pixel is then its colour times its coverage.
     """
     unread = {**thickness_not_read(setting), **screen_occlusion_not_read(setting), **shadow.not_read(setting)}
     layer = tuple(name for name in (*SCREEN_OCCLUSION, *THICKNESSES, "shadow_maps") if name not in unread)
-    where = needs_position(setting)
-    constants = {
-        **surface_uniforms(setting),
-        **(light_uniforms(setting) if setting.shining else {}),
-        **(shadow.shadow_uniforms(setting) if setting.casting else {}),
-        **({"tangent": setting.view.tangent} if where or not setting.lacking("specular") else {}),
-        **({"camera_distance": setting.view.distance} if where else {}),
-        **({} if setting.lacking("backlight") else backlight_uniforms(setting)),
-    }
-    defines = {
-        **light_defines(setting),
-        **(shadow.shadow_defines(setting) if setting.casting else {}),
-        "NEEDS_POSITION": int(where),
-    }
+    where = ("front",) if needs_position(setting) else ()
+    constants, defines = uniforms(setting), permutation(setting)
 
     def draw(frame: Frame) -> None:
         frame.fill("shade.frag", constants, **defines)
@@ -42,13 +31,32 @@ def shade(setting: Setting) -> Pass:
     return Pass(
         "shade",
         draw,
-        reads=("surface", "coverage", *(("front",) if where else ()), *layer),
+        reads=("surface", "coverage", *where, *layer),
         unread=unread,
         writes={"shaded": TextureSpec(setting.size, 4)},
         mask="coverage",
         clear=(0.0, 0.0, 0.0, 0.0) if setting.scene.alpha else (*setting.scene.background, 0.0),
         merges=THICKNESSES,
     )
+
+
+def uniforms(setting: Setting) -> dict[str, Any]:
+    """What the permutation is fed."""
+    where = needs_position(setting)
+    return {
+        **surface_uniforms(setting),
+        **(light_uniforms(setting) if setting.shining else {}),
+        **(shadow.shadow_uniforms(setting) if setting.casting else {}),
+        **({"tangent": setting.view.tangent} if where or not setting.lacking("specular") else {}),
+        **({"camera_distance": setting.view.distance} if where else {}),
+        **({} if setting.lacking("backlight") else backlight_uniforms(setting)),
+    }
+
+
+def permutation(setting: Setting) -> dict[str, int]:
+    """The defines of `glsl/shade.frag`."""
+    shadows = shadow.shadow_defines(setting) if setting.casting else {}
+    return {**light_defines(setting), **shadows, "NEEDS_POSITION": int(needs_position(setting))}
 
 
 def needs_position(setting: Setting) -> bool:
