@@ -15,7 +15,7 @@ SCREEN_OCCLUSION = ("screen_occlusion",)
 
 
 def shade(setting: Setting) -> Pass:
-    """Reads `surface`, one thickness, and what else the scene calls for: `front` where place matters, occlusion, shadows.
+    """Reads `surface` and what the scene calls for: a thickness, `front` where place matters, occlusion, shadow maps.
 
     Writes `shaded` (linear RGB over the background, 1 where covered).
     With `alpha` the background is black: what is added up for a pixel is then its colour times its coverage.
