@@ -10,31 +10,27 @@ import platform
 import statistics
 import time
 from collections.abc import Callable, Mapping, Sequence
-from concurrent.futures import ThreadPoolExecutor
 from typing import Any
 
 import numpy as np
 from tqdm import tqdm
 
+from fakesss.bench_bake import bake_times
 from fakesss.colour import to_8bit
 from fakesss.direct_light import DirectLight
 from fakesss.frame import Run
 from fakesss.frame_graph import Plan
-from fakesss.hemisphere import even_directions
 from fakesss.mesh import Mesh
-from fakesss.occlusion import bake_occlusion, cast_rays, ray_origins
+from fakesss.occlusion import bake_occlusion
 from fakesss.pipeline import build
-from fakesss.ray_casting import Caster
 from fakesss.renderer import PICTURE, Renderer, shared_renderer
 from fakesss.scene import Scene
 from fakesss.solidity import is_solid
-from fakesss.space_order import along_curve
 
 FACES = (4_000, 30_000, 60_000, 100_000, 120_000, 240_000)
 SIZE = (512, 512)
 REPEATS = 15
-BUILDS, BAKES = 5, 3  # of the hierarchy, of the occlusion
-BARE_DIRECTIONS, BARE_BATCH = 32, 65_536  # of the rays cast barely: enough to time, few enough to hold
+BAKES = 5  # of the hierarchy and of the occlusion
 RAYS = 320
 COARSE = 8_000  # faces of the approximate second layer
 
@@ -46,8 +42,8 @@ METHOD = (
     "direct: one forward pass into 8-bit colour, back faces culled; technique: the exact picture of the default scene; "
     f"approximate: its second layer from {COARSE} faces; own_direct: this renderer without backlight; "
     "largest_difference: of 8-bit codes, to the peeled, unmerged float32 path; "
-    f"bake: {RAYS} rays a vertex with the hierarchy; "
-    "embree: a tenth of the same rays, prepared before, on all cores, in turn with the bake"
+    f"bake: {RAYS} rays a vertex; bare Embree: the same rays, prepared before, on all cores, in turn; "
+    "share of work: bare Embree's processor time over the bake's"
 )
 
 
@@ -80,7 +76,7 @@ def row(renderer: Renderer, scene: Scene, repeats: int) -> dict[str, Any]:
         **{f"{name}_ms": ms for name, ms in drawn.items()},
         **{f"{name}ratio": drawn[f"{name}technique"] / drawn["direct"] for name in ("", "peeled_", "approximate_")},
         "largest_difference": largest_difference(renderer, scene, mesh),
-        **bake_times(mesh),
+        **bake_times(mesh, RAYS, min(BAKES, repeats)),
     }
 
 
@@ -132,48 +128,3 @@ def largest_difference(renderer: Renderer, scene: Scene, mesh: Mesh) -> int:
     pictures = [Run(plan, renderer.gpu, renderer.bakes)().values[PICTURE] for plan in plans]
     codes = [to_8bit(picture[..., :3]).astype(int) for picture in pictures]
     return int(np.abs(codes[0] - codes[1]).max())
-
-
-def bake_times(mesh: Mesh) -> dict[str, float]:
-    """Hierarchy (ms), whole bake without the cache (s), and million rays a second beside bare Embree's, in turn."""
-    builds = [Caster(mesh).build_seconds for _ in range(BUILDS)]
-    bare = BareRays(mesh)
-    bakes = []
-    for _ in range(BAKES):
-        start, used = time.perf_counter(), time.process_time()
-        _, cast = cast_rays(mesh, RAYS, "cosine")
-        seconds, working = time.perf_counter() - start, time.process_time() - used
-        bakes.append((seconds, cast / seconds / 1e6, working / seconds, bare()))
-    seconds, rate, busy, bare_rate = (statistics.median(column) for column in zip(*bakes, strict=True))
-    return {
-        "bvh_ms": 1e3 * statistics.median(builds),
-        "ao_seconds": seconds,
-        "ao_mrays_per_s": rate,
-        "ao_cores_busy": busy,
-        "embree_mrays_per_s": bare_rate,
-    }
-
-
-class BareRays:
-    """A share of the bake's rays, prepared: `BareRays(mesh)()` casts them and nothing else, in Mrays/s on all cores."""
-
-    def __init__(self, mesh: Mesh) -> None:
-        self.caster, origins = Caster(mesh), ray_origins(mesh)
-        origins = origins[along_curve(origins)]
-        normals = mesh.normals[along_curve(ray_origins(mesh))]
-        self.batches = []
-        for direction in even_directions(2 * RAYS)[:: RAYS // BARE_DIRECTIONS].astype(np.float32):
-            above = origins[normals @ direction > 0]
-            for start in range(0, len(above), BARE_BATCH):
-                self.batches.append((above[start : start + BARE_BATCH], direction[None]))
-
-    def __call__(self) -> float:
-        def cast(batch: tuple[Any, Any]) -> int:
-            origins, direction = batch
-            self.caster.clear(origins, direction, np.full(len(origins), np.inf, np.float32))
-            return len(origins)
-
-        with ThreadPoolExecutor(os.cpu_count()) as pool:
-            start = time.perf_counter()
-            rays = sum(pool.map(cast, self.batches))
-            return rays / (time.perf_counter() - start) / 1e6

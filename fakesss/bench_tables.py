@@ -6,7 +6,7 @@ from typing import Any
 from fakesss.bench import THESIS
 
 DRAWING = ("faces", "direct ms", "technique ms", "ratio", "peeled", "approximate", "thesis", "largest difference")
-BAKING = ("faces", "hierarchy ms", "bake s", "Mrays/s", "bare Embree Mrays/s", "share", "cores busy")
+BAKING = ("faces", "hierarchy ms", "bake s", "Mrays/s", "bare Embree", "share", "share of work", "cores busy", "bare")
 
 
 def tables(result: Mapping[str, Any]) -> str:
@@ -52,7 +52,9 @@ def baking(row: Mapping[str, Any]) -> list[str]:
         f"{row['ao_mrays_per_s']:.1f}",
         f"{row['embree_mrays_per_s']:.1f}",
         f"{row['ao_mrays_per_s'] / row['embree_mrays_per_s']:.0%}",
+        f"{row['ao_share_of_work']:.0%}",
         f"{row['ao_cores_busy']:.2f}",
+        f"{row['embree_cores_busy']:.2f}",
     ]
 
 

@@ -3,10 +3,11 @@
 import numpy as np
 import pytest
 
-from fakesss.bench import SIZE, BareRays, bench, in_turn
+from fakesss.bench import SIZE, bench, in_turn
+from fakesss.bench_bake import bake_times, prepared
 from fakesss.bench_tables import tables
 from fakesss.direct_light import DirectLight
-from fakesss.occlusion import bake_occlusion
+from fakesss.occlusion import bake_occlusion, cast_rays
 from fakesss.renderer import Renderer
 from fakesss.scene import Scene
 from fakesss.shapes import load_object
@@ -55,8 +56,10 @@ def test_ways_are_timed_in_turn_and_the_first_rounds_do_not_count() -> None:
     assert calls == ["a", "b"] * 5 and times.keys() == {"a", "b"}
 
 
-def test_bare_rays_are_a_share_of_the_bakes() -> None:
+def test_bare_rays_are_those_of_the_bake() -> None:
     mesh = load_object("sphere:1000")
-    bare = BareRays(mesh)
-    cast = sum(len(origins) for origins, _ in bare.batches)
-    assert 0.05 < cast / (320 * len(mesh.positions)) < 0.2 and bare() > 0
+    ready = prepared(mesh, 20)
+    _, cast = cast_rays(mesh, 20, "cosine")
+    assert sum(len(origins) for origins, _, _ in ready) == cast
+    times = bake_times(mesh, 20, 1)
+    assert times["ao_mrays_per_s"] == pytest.approx(cast / 1e6 / (times["ao_seconds"] - times["bvh_ms"] / 1e3))

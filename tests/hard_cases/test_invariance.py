@@ -120,14 +120,17 @@ def test_mended_winding_gives_the_sound_object(renderer: Renderer, folder: Path,
     assert_same(*[renderer.data(scene, LAYERS) for scene in scenes])
 
 
-@pytest.mark.parametrize("case", DRAWN.values(), ids=str)
+def uncut(case: Case) -> bool:
+    """Whether no plane cuts the object, and one could lie far enough not to; the published flaws depend on planes."""
+    camera = Scene().replace({path: v for path, v in case.changes.items() if path.startswith("camera.")}).camera
+    view = View.of(camera, case.changes.get("size", Scene().size))
+    return not view.clips_sphere and view.distance < 9999 and case.changes.get("style") != "as published"
+
+
+@pytest.mark.parametrize("case", [case for case in DRAWN.values() if uncut(case)], ids=str)
 def test_planes_that_cut_nothing_change_no_byte(renderer: Renderer, folder: Path, case: Case) -> None:
     scene = case.scene(folder)
-    view = View.of(scene.camera, scene.size)
-    if view.clips_sphere or scene.style == "as published":
-        pytest.skip("its planes cut the object, or are part of the published flaws")
-    wide = scene.replace({"camera.near": max(1e-9, 1e-9 * view.near), "camera.far": 1e4})
-    if view.distance + 1 > 1e4:
-        pytest.skip("no plane may be so far")
+    near = View.of(scene.camera, scene.size).near
+    wide = scene.replace({"camera.near": max(1e-9, 1e-9 * near), "camera.far": 1e4})
     one, other = renderer.render(scene).image, renderer.render(wide).image
     np.testing.assert_array_equal(one, other)
