@@ -19,5 +19,6 @@ def coarser(mesh: Mesh, faces: int) -> Mesh:
     positions, triangles = mesh_repair.weld(mesh.positions.astype(np.float64), mesh.faces, [])
     few, triangles = fast_simplification.simplify(positions, triangles, target_count=faces, lossless=False)
     kept, triangles = mesh_repair.weld(few.astype(np.float64), triangles.astype(np.int64), [])
+    watertight = mesh_repair.is_closed(triangles)
     single, normals, triangles = with_creases(kept, triangles)
-    return Mesh(single, normals, triangles, mesh_repair.is_closed(triangles), (), mesh.centre, mesh.radius)
+    return Mesh(single, normals, triangles, watertight, (), mesh.centre, mesh.radius)

@@ -6,6 +6,7 @@ cost; what is answered for it means nothing.
 """
 
 import time
+from typing import Any
 
 import numpy as np
 from embreex.mesh_construction import TriangleMesh
@@ -34,9 +35,13 @@ class Caster:
         self.first_face(np.zeros((1, 3), np.float32), np.ones((1, 3), np.float32))
         self.build_seconds = time.perf_counter() - started
 
-    def first_face(self, origins: Floats32, directions: Floats32) -> NDArray[np.int32]:
-        """The index of the first triangle that each ray hits, or `NOTHING`."""
-        found: NDArray[np.int32] = self._scene.run(origins, directions, query="INTERSECT")
+    def first_face(
+        self, origins: NDArray[Any], directions: NDArray[Any], reach: NDArray[Any] | None = None
+    ) -> NDArray[np.int32]:
+        """The index of the first triangle that each ray hits within its reach, or `NOTHING`."""
+        far = None if reach is None else reach.astype(np.float32)
+        rays = origins.astype(np.float32, copy=False), directions.astype(np.float32, copy=False)
+        found: NDArray[np.int32] = self._scene.run(*rays, dists=far, query="INTERSECT")
         return found
 
     def clear(self, origins: Floats32, directions: Floats32, reach: Floats32) -> NDArray[np.bool_]:

@@ -31,14 +31,14 @@ class Rendering:
 
     image: Float32  # (H, W, 4), top row first: linear RGB over the background (`alpha`: over nothing), and coverage
     passes: list[dict[str, Any]]  # {"name", "gpu_ms"} in the order they ran; gpu_ms is None unless timed
-    repairs: tuple[str, ...]  # of the mesh, one sentence each
+    notes: tuple[str, ...]  # the mesh's repairs and settings that do nothing, one sentence each
     baked: dict[str, Made]
     alpha: bool
 
     @cached_property
     def warnings(self) -> tuple[str, ...]:
         """One sentence each."""
-        return (*self.repairs, *picture_warnings(self.image, self.alpha))
+        return (*self.notes, *picture_warnings(self.image, self.alpha))
 
     @cached_property
     def non_finite(self) -> int:
@@ -63,7 +63,8 @@ class Renderer:
         plan, outcome = self._run(scene, (PICTURE, "mesh"), samples_of(scene), timed, forced)
         image = np.ascontiguousarray(outcome.values[PICTURE][::-1])
         passes = [{"name": name, "gpu_ms": outcome.gpu_ms.get(name)} for name in plan.passes]
-        return Rendering(image, passes, tuple(outcome.values["mesh"].repairs), dict(outcome.baked), scene.alpha)
+        notes = (*outcome.values["mesh"].repairs, *idle_settings(scene, plan))
+        return Rendering(image, passes, notes, dict(outcome.baked), scene.alpha)
 
     def data(self, scene: Scene, targets: tuple[str, ...], samples: int = 1) -> dict[str, Any]:
         """Resources by name, top row first: one sample at each pixel's centre, so data is never averaged.
@@ -107,6 +108,13 @@ class Renderer:
 def upright(value: Any) -> Any:
     """A picture with its top row first; anything else as it is."""
     return np.ascontiguousarray(value[::-1]) if isinstance(value, np.ndarray) and value.ndim > 1 else value
+
+
+def idle_settings(scene: Scene, plan: Plan) -> tuple[str, ...]:
+    """A sentence for a setting that a study may vary in vain."""
+    if scene.layers.faces is None or "coarse_mesh" in (node.name for node in plan.kept):
+        return ()
+    return ("layers.faces does nothing here: the picture needs no second layer of a solid.",)
 
 
 def picture_warnings(image: Float32, alpha: bool) -> tuple[str, ...]:

@@ -4,7 +4,8 @@
 #include "common_layers.glsl"
 
 #define AS_PUBLISHED 0  // 1: compares non-linear depths, as the program of 2011 did
-#define BEFORE_FACES 0  // 1: the layer before is of front faces, -1: of back faces, 0: of either
+#define BEFORE_FACES 0  // 1: the layer before is of front faces, -1: of back faces, 0: of either, 2: its sign says which
+#define SIGNED 0  // 1: the layer is negative where it is of a front face
 #define NEAREST 0  // 1: nothing lies before the layer before
 #define PEEL_EPSILON 1e-5  // sphere diameters: well above float32 rounding of a layer
 #define PUBLISHED_EPSILON 1e-6  // thesis appendix B, in non-linear depth
@@ -24,15 +25,17 @@ float window(float layer) { return nonlinear_depth(layer - ORIGIN + distance, cl
 
 void main() {
     float here = in_sphere(layer);
-    float nearest = texelFetch(before, ivec2(gl_FragCoord.xy), 0).r;
+    float earlier = texelFetch(before, ivec2(gl_FragCoord.xy), 0).r;
+    float nearest = abs(earlier);
 #if AS_PUBLISHED
     bool further = window(here) > window(nearest) + PUBLISHED_EPSILON;
 #else
     // What looks the other way is not the layer before itself, however near it is. By rounding it may come to lie
     // before it: a triangle seen edge-on is many depths in one sample.
-    bool other = BEFORE_FACES != 0 && gl_FrontFacing == (BEFORE_FACES < 0);
+    bool before_front = BEFORE_FACES == 2 ? earlier < 0.0 : BEFORE_FACES > 0;
+    bool other = BEFORE_FACES != 0 && gl_FrontFacing != before_front;
     bool further = here > nearest + (other ? -PEEL_EPSILON : PEEL_EPSILON) * DIAMETER || (other && NEAREST == 1);
 #endif
     if (is_empty(nearest) || !further) discard;
-    behind = here;
+    behind = SIGNED == 1 && gl_FrontFacing ? -here : here;
 }

@@ -5,17 +5,17 @@ from fakesss.frame import Frame
 from fakesss.frame_graph import Pass, TextureSpec
 from fakesss.passes.geometry import Cull, draw_mesh
 
-DEEPEST = 6  # layer of a bridged thickness: three intervals of matter
+DEEPEST = 6  # layer of a bridged thickness: three stretches of matter in a solid
 
 
 def peel(setting: Setting) -> Pass:
     """Reads `mesh` and `front`; writes `peeled` (depth of the second layer, 0 where there is none)."""
 
     def draw(frame: Frame) -> None:
-        # from outside, a closed surface shows front faces only
-        closed = frame.inputs["mesh"].watertight and not setting.view.clips_sphere
         published = int(setting.published)
-        step(frame, setting, "front", "", BEFORE_FACES=int(closed), NEAREST=1, AS_PUBLISHED=published)
+        step(
+            frame, setting, "front", "", BEFORE_FACES=faces_of_front(frame, setting), NEAREST=1, AS_PUBLISHED=published
+        )
 
     return Pass(
         "peel",
@@ -26,25 +26,34 @@ def peel(setting: Setting) -> Pass:
     )
 
 
+def faces_of_front(frame: Frame, setting: Setting) -> int:
+    """1 where the front layer is of front faces only: of a closed surface seen from outside; else 0, of either."""
+    return int(frame.inputs["mesh"].watertight and not setting.view.clips_sphere)
+
+
 def deeper(setting: Setting) -> list[Pass]:
-    """One pass for each of the layers from the third on: writes `layer_3` and so on, each read by the next.
+    """One pass for each layer from the second on: writes `layer_2` and so on, negative where it is of a front face.
 
     In a solid, entries and exits alternate, so only faces turned the right way need to be drawn.
     """
 
     def one(number: int) -> Pass:
-        before = "first_exit" if number == 3 else f"layer_{number - 1}"
+        before = "front" if number == 2 else f"layer_{number - 1}"
         faces: Cull = ("front" if number % 2 == 0 else "back") if setting.outside_only else ""
-        before_faces = (1 if number % 2 == 0 else -1) if setting.outside_only else 0
+
+        def draw(frame: Frame) -> None:
+            known = faces_of_front(frame, setting) if number == 2 else 2
+            step(frame, setting, before, faces, BEFORE_FACES=known, NEAREST=int(number == 2), SIGNED=1)
+
         return Pass(
             f"peel_{number}",
-            lambda frame: step(frame, setting, before, faces, BEFORE_FACES=before_faces),
+            draw,
             reads=("mesh", before),
             writes={f"layer_{number}": TextureSpec(setting.size, 1)},
             depth_test=True,
         )
 
-    return [one(number) for number in range(3, DEEPEST + 1)]
+    return [one(number) for number in range(2, DEEPEST + 1)]
 
 
 def step(frame: Frame, setting: Setting, before: str, cull: Cull, **defines: int) -> None:

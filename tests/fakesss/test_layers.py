@@ -8,6 +8,7 @@ from numpy.typing import NDArray
 from picture_scenes import dark, sheet_file
 from scipy.ndimage import binary_erosion
 
+from fakesss.colour import to_8bit
 from fakesss.hard_edges import hard_edges
 from fakesss.problem import BadInput
 from fakesss.renderer import Renderer, render
@@ -104,6 +105,22 @@ def test_a_coarser_second_layer_is_near_the_exact_one(renderer: Renderer) -> Non
     )
     difference = np.abs(exact - coarse)
     assert difference.max() > 0 and np.percentile(difference[exact > 0.02], 99) < 5e-3
+
+
+def test_the_error_of_a_coarser_second_layer_is_as_documented(renderer: Renderer) -> None:
+    """docs/technique.md: head, 60K faces from 8K, 512 x 512."""
+    scene = Scene(object="head:60000")
+    exact, coarse = (to_8bit(renderer.render(s).image) for s in (scene, scene.replace({"layers.faces": 8000})))
+    covered = exact[..., 3] > 0
+    error = np.abs(exact.astype(int) - coarse)[covered].max(axis=1)
+    assert 0.01 < (error > 2).mean() < 0.03 and np.percentile(error, 99) <= 6
+
+
+def test_a_coarser_second_layer_that_is_not_to_be_had_is_said(renderer: Renderer, tmp_path: Path) -> None:
+    scene = Scene(object=sheet_file(tmp_path), size=(16, 16)).replace({"layers.faces": 100})
+    assert any(warning.startswith("layers.faces does nothing here") for warning in renderer.render(scene).warnings)
+    solid = Scene(object="torus:8000", size=(16, 16)).replace({"layers.faces": 1000})
+    assert renderer.render(solid).warnings == ()
 
 
 @pytest.mark.parametrize("target", ["thickness", "front", "second", "blurred_thickness"])

@@ -31,11 +31,11 @@ CASES: list[tuple[dict[str, Any], str]] = [
     ({"material.thickness": "local"}, "mesh occlusion local_thickness front local_exit blur+shade resolve"),
     (
         {"material.thickness": "bridged"},
-        f"{LIT} back_faces peel_3 peel_4 peel_5 peel_6 bridge blur+shade resolve",
+        f"{LIT} peel_2 peel_3 peel_4 peel_5 peel_6 bridge blur+shade resolve",
     ),
     (
         {"material.thickness": "bridged", "layers.method": "peel", "blur.enabled": False},
-        f"{LIT} peel peel_3 peel_4 peel_5 peel_6 bridge thickness+shade resolve",
+        f"{LIT} peel_2 peel_3 peel_4 peel_5 peel_6 bridge thickness+shade resolve",
     ),
     ({"style": "as published"}, f"{LIT} peel blur+shade resolve"),
 ]

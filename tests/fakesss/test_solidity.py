@@ -8,7 +8,7 @@ import trimesh
 
 from fakesss.mesh import Mesh, load_mesh
 from fakesss.shapes import load_object, names
-from fakesss.solidity import is_solid, winds_once
+from fakesss.solidity import bounds_solid, is_solid
 
 
 def ball(centre: tuple[float, float, float] = (0, 0, 0), radius: float = 1.0, inwards: bool = False) -> trimesh.Trimesh:
@@ -48,7 +48,29 @@ def test_the_built_in_objects(name: str) -> None:
 def test_parts(tmp_path: Path, parts: list[trimesh.Trimesh], solid: bool) -> None:
     mesh = loaded(tmp_path, *parts)
     assert mesh.watertight
-    assert winds_once(mesh) == solid
+    assert bounds_solid(mesh) == solid
+
+
+def bar(x: float, y: float, z: float, place: tuple[float, float, float] = (0, 0, 0)) -> trimesh.Trimesh:
+    part = trimesh.creation.box((x, y, z))
+    part.apply_translation(place)
+    return part
+
+
+@pytest.mark.parametrize(
+    ("parts", "solid"),
+    [
+        ([bar(4, 1, 1), bar(1, 4, 0.8)], False),
+        ([bar(4, 1, 1), bar(1, 4, 0.8, (0, 0, 2))], True),
+        ([bar(2, 2, 2), bar(2, 2, 2, (1.7, 1.7, 1.7))], False),
+        ([bar(2, 2, 2), bar(2, 2, 2, (2.01, 0, 0))], True),
+        ([bar(0.3, 0.3, 3, (x, 0, 0)) for x in (-1, 0, 1)] + [bar(3, 0.2, 0.2)], False),
+    ],
+    ids=["crossing bars", "bars apart", "corner in corner", "side by side", "grid"],
+)
+def test_parts_of_few_large_faces(tmp_path: Path, parts: list[trimesh.Trimesh], solid: bool) -> None:
+    """The middles of such faces lie outside the other part: only edges tell."""
+    assert bounds_solid(loaded(tmp_path, *parts)) == solid
 
 
 def test_an_open_surface_is_none() -> None:

@@ -105,17 +105,35 @@ def test_longer_ways_through_solids(renderer: Renderer, name: str, kind: str) ->
     view = View.of(scene.camera, scene.size)
     drawn = renderer.data(scene, ("thickness",))["thickness"]
     origins, directions = rays(view)
-    distances, sides = Crossings(load_object(name))(origins, directions)
-    forward = directions @ -view.rotation[2]
-    depths = distances * forward[:, None]
-    inside = paths(depths, sides) if kind == "total-path" else bridged_paths(depths, 2 * scene.layers.gap)
-    truth = np.where(sides[:, :1].any(axis=1), inside / 2, np.nan).reshape(SIZE[::-1])
-    alternating = (np.abs(np.cumsum(sides, axis=1) + 0.5) == 0.5).all(axis=1).reshape(truth.shape)
+    hits = Crossings(load_object(name))(origins, directions)
+    depths = hits.distances * (directions @ -view.rotation[2])[:, None]
+    inside = paths(hits, depths) if kind == "total-path" else bridged_paths(hits, depths, 2 * scene.layers.gap)
+    truth = np.where(hits.sides[:, :1].any(axis=1), inside / 2, np.nan).reshape(SIZE[::-1])
+    alternating = (np.abs(np.cumsum(hits.sides, axis=1) + 0.5) == 0.5).all(axis=1).reshape(truth.shape)
     sure = off_silhouettes(truth) & alternating
     error = np.abs(drawn - truth)[sure]
     print(f"{name} {kind}: max {error.max():.2e} 99.9% {np.percentile(error, 99.9):.2e} pixels {error.size}")
     assert error.size > 10_000
     assert np.percentile(error, 99.9) < ROUNDING[1] and error.max() < 2e-3
+
+
+@pytest.mark.gl
+def test_bridging_parts_that_pass_through_one_another(renderer: Renderer, tmp_path: Path) -> None:
+    """Two balls, one into the other: their union is one stretch, where it can be told by six layers."""
+    balls = [trimesh.creation.icosphere(subdivisions=4) for _ in range(2)]
+    balls[1].apply_translation((0.4, 0.2, -0.9))
+    path = tmp_path / "balls.ply"
+    trimesh.util.concatenate(balls).export(path)
+    scene = Scene(object=str(path), size=SIZE).replace({"material.thickness": "bridged"})
+    view, mesh = View.of(scene.camera, scene.size), load_mesh(path)
+    origins, directions = rays(view)
+    hits = Crossings(mesh)(origins, directions)
+    depths = hits.distances * (directions @ -view.rotation[2])[:, None]
+    truth = bridged_paths(hits, depths, 2 * scene.layers.gap) / 2
+    truth = np.where(hits.sides[:, :1].any(axis=1), truth, np.nan).reshape(SIZE[::-1])
+    error = np.abs(renderer.data(scene, ("thickness",))["thickness"] - truth)[off_silhouettes(truth)]
+    assert error.size > 10_000 and np.percentile(error, 99.9) < 1e-5
+    assert np.nanmax(truth) > 0.8  # more than either ball
 
 
 def near(t: Floats) -> NDArray[np.bool_]:
