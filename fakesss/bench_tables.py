@@ -5,7 +5,19 @@ from typing import Any
 
 from fakesss.bench import THESIS
 
-DRAWING = ("faces", "direct ms", "technique ms", "ratio", "peeled", "approximate", "thesis", "largest difference")
+DRAWING = (
+    "faces",
+    "direct ms",
+    "technique ms",
+    "ratio",
+    "unculled",
+    "peeled",
+    "approximate",
+    "own",
+    "thesis",
+    "difference",
+)
+RATIOS = ("ratio", "unculled_ratio", "peeled_ratio", "approximate_ratio", "own_ratio")
 BAKING = ("faces", "hierarchy ms", "bake s", "Mrays/s", "bare Embree", "share", "share of work", "cores busy", "bare")
 
 
@@ -37,7 +49,7 @@ def drawing(row: Mapping[str, Any]) -> list[str]:
         f"{row['faces']:,}",
         f"{row['direct_ms']:.1f}",
         f"{row['technique_ms']:.1f}",
-        *(f"{row[name]:.2f}" for name in ("ratio", "peeled_ratio", "approximate_ratio")),
+        *(f"{row[name]:.2f}" for name in RATIOS),
         "" if thesis is None else f"{thesis:.1f}",
         f"{row['largest_difference']}/255",
     ]
