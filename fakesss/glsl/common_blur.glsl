@@ -34,9 +34,11 @@ float blurred(float centre, vec2 here) {
     for (int y = -2; y <= 2; ++y)
         for (int x = -2; x <= 2; ++x) {
             float depth = compared(texture(second, here + tap * vec2(x, y)).r);
-            float gap = min(abs(depth - centre) * steepness, 1.0);
-            float weight = is_background(depth) ? 0.0 : KERNEL[3 * abs(y) + abs(x)] * (1.0 - gap);  // eq. C.1
-            sum += weight * (depth - centre);  // of differences: their rounding is far below that of depths
+            float kernel = KERNEL[3 * abs(y) + abs(x)];
+            float off = depth - centre;
+            // eq. C.1, g (1 - clamp(|dz| / range, 0, 1)), in one multiplication and addition
+            float weight = is_background(depth) ? 0.0 : max(kernel - abs(off) * (kernel * steepness), 0.0);
+            sum += weight * off;  // of differences: their rounding is far below that of depths
             weights += weight;
         }
     return to_layer(weights > 0.0 ? centre + sum / weights : centre);
@@ -45,8 +47,10 @@ float blurred(float centre, vec2 here) {
 // `z1` is the front layer at `place`, shares of the picture's width and height.
 float blurred_thickness_behind(float z1, vec2 place) {
     float z2 = texture(second, place).r;
-#if !AS_PUBLISHED
-    if (is_empty(z2)) return open_thickness;
+    float soft = relative_thickness(z1, blurred(compared(z2), place), open_thickness);
+#if AS_PUBLISHED
+    return soft;
+#else
+    return is_empty(z2) ? open_thickness : soft;
 #endif
-    return relative_thickness(z1, blurred(compared(z2), place), open_thickness);
 }
