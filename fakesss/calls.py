@@ -3,10 +3,14 @@
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 
+import numpy as np
+from numpy.typing import NDArray
+
 from fakesss.camera import View
 from fakesss.lights import Light
-from fakesss.scene import Scene
+from fakesss.scene import Material, Scene
 
+Array = NDArray[np.float64]
 Reason = Callable[[Scene], str]  # the setting that says no, in words; "" if none does
 
 
@@ -18,7 +22,8 @@ def never(scene: Scene) -> str:
 class Effect:
     """Why a scene does without an effect.
 
-    `off` changes the picture; `weightless` does not: the effect, forced on, would be multiplied by zero.
+    `off` changes the picture; `weightless` does not: the effect, forced on, would be multiplied by zero, or its
+    thickness raised to the power of zero.
     """
 
     weightless: Reason
@@ -34,6 +39,29 @@ def lights_of(scene: Scene) -> tuple[Light, ...]:
     return (scene.light, *scene.lights)
 
 
+def ambient_colour(scene: Scene) -> Array:
+    """ka Kd Ia of eq. 3.7, the lights' ambient intensities added up."""
+    material = scene.material
+    intensity = np.sum([light.ambient for light in lights_of(scene)], axis=0)
+    return np.asarray(material.ambient * np.array(material.diffuse) * intensity)
+
+
+def diffuse_colour(material: Material, light: Light) -> Array:
+    """wd Kd Id of eq. 3.8."""
+    return np.asarray(material.diffuse_contribution * np.array(material.diffuse) * light.diffuse)
+
+
+def specular_colour(material: Material, light: Light) -> Array:
+    """ws ks Is of eq. 3.9."""
+    return np.asarray(material.specular_contribution * material.specular * np.array(light.specular))
+
+
+def backlight_colour(scene: Scene) -> Array:
+    """wb (Kd + Kb) of eq. 3.10."""
+    material = scene.material
+    return np.asarray(material.backlight * (np.array(material.diffuse) + material.diffuse_weight))
+
+
 def none_shines(scene: Scene, term: str) -> str:
     """`light.ambient is 0`, if it is for every light."""
     if any(any(getattr(light, term)) for light in lights_of(scene)):
@@ -46,23 +74,51 @@ def when(holds: bool, sentence: str) -> str:
     return sentence if holds else ""
 
 
+def no_exposure(scene: Scene) -> str:
+    return when(scene.exposure == 0, "exposure is 0")
+
+
 def no_backlight(scene: Scene) -> str:
-    return when(scene.material.backlight == 0, "material.backlight is 0")
+    return (
+        no_exposure(scene)
+        or when(scene.material.backlight == 0, "material.backlight is 0")
+        or when(not backlight_colour(scene).any(), "material.diffuse plus diffuse_weight is 0")
+    )
+
+
+def no_thickness(scene: Scene) -> str:
+    """A power of 0 is 1 at any thickness."""
+    constant = scene.material.thickness_exponent == 0
+    return no_backlight(scene) or when(constant, "material.thickness_exponent is 0, so thickness does not matter")
 
 
 def no_ambient(scene: Scene) -> str:
-    return when(scene.material.ambient == 0, "material.ambient is 0") or none_shines(scene, "ambient")
+    return (
+        no_exposure(scene)
+        or when(scene.material.ambient == 0, "material.ambient is 0")
+        or none_shines(scene, "ambient")
+        or when(not ambient_colour(scene).any(), "material.diffuse reflects none of the ambient light")
+    )
 
 
 def no_diffuse(scene: Scene) -> str:
-    zero = scene.material.diffuse_contribution == 0
-    return when(zero, "material.diffuse_contribution is 0") or none_shines(scene, "diffuse")
+    material = scene.material
+    return (
+        no_exposure(scene)
+        or when(material.diffuse_contribution == 0, "material.diffuse_contribution is 0")
+        or none_shines(scene, "diffuse")
+        or when(
+            not any(diffuse_colour(material, light).any() for light in lights_of(scene)),
+            "material.diffuse reflects none of the diffuse light",
+        )
+    )
 
 
 def no_specular(scene: Scene) -> str:
     material = scene.material
     return (
-        when(material.specular == 0, "material.specular is 0")
+        no_exposure(scene)
+        or when(material.specular == 0, "material.specular is 0")
         or when(material.specular_contribution == 0, "material.specular_contribution is 0")
         or none_shines(scene, "specular")
     )
@@ -70,15 +126,17 @@ def no_specular(scene: Scene) -> str:
 
 def shining(scene: Scene) -> tuple[Light, ...]:
     """The lights that add a diffuse or specular term."""
-    terms = [term for term, reason in (("diffuse", no_diffuse), ("specular", no_specular)) if not reason(scene)]
-    return tuple(light for light in lights_of(scene) if any(any(getattr(light, term)) for term in terms))
+    if no_exposure(scene):
+        return ()
+    colours = (diffuse_colour, specular_colour)
+    return tuple(light for light in lights_of(scene) if any(colour(scene.material, light).any() for colour in colours))
 
 
 def no_shadow(scene: Scene) -> str:
     """Nothing that a shadow could dim."""
     diffuse, specular = no_diffuse(scene), no_specular(scene)
     if diffuse and specular:
-        return f"{diffuse} and {specular}"
+        return " and ".join(dict.fromkeys((diffuse, specular)))
     dark = any(light.shadows for light in lights_of(scene)) and not any(light.shadows for light in shining(scene))
     return when(dark, "no light with shadows = true shines")
 
@@ -96,8 +154,8 @@ def blur_off(scene: Scene) -> str:
 
 
 EFFECTS: Mapping[str, Effect] = {
-    "backlight": Effect(weightless=no_backlight),
-    "blur": Effect(weightless=no_backlight, off=blur_off),
+    "backlight": Effect(weightless=no_thickness),
+    "blur": Effect(weightless=no_thickness, off=blur_off),
     "occlusion": Effect(weightless=no_ambient, off=occlusion_off),
     "diffuse": Effect(weightless=no_diffuse),
     "specular": Effect(weightless=no_specular),

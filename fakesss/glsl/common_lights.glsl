@@ -30,7 +30,7 @@ float arriving(int i, vec3 point, out vec3 to_light) {
 #if LOCAL_LIGHTS
     vec3 towards = light_place[i].xyz - light_place[i].w * point;
     float d = max(length(towards), NEAREST);
-    to_light = towards / d;
+    to_light = light_place[i].w == 0.0 ? light_place[i].xyz : towards / d;  // to the bit as without local lights
     float share = attenuation(d, light_attenuation[i]);
 #if SPOTS
     float v = versine(light_axis[i], to_light);
@@ -51,7 +51,7 @@ vec3 lit(vec3 colour, vec3 normal, vec3 point, vec2 place) {
         float share = arriving(i, point, to_light);
         float n_dot_l = dot(normal, to_light);
 #if HAS_SHADOW_MAPS
-        if (n_dot_l > 0.0) share *= unshadowed(i, point, normal, n_dot_l);
+        if (n_dot_l > 0.0 && share > 0.0) share *= unshadowed(i, point, normal, n_dot_l);
 #endif
         colour += share * lambert(n_dot_l) * diffuse_colour[i];
 #if HIGHLIGHT

@@ -98,6 +98,7 @@ float unshadowed(int i, vec3 point, vec3 normal, float n_dot_l) {
         number += side;
     }
     float width = map.y + map.z * p.z;
+    if (width < NEAREST) return 1.0;  // nearer than any map begins, or behind a spot, where none of its light arrives
     vec2 texel = (p.xy / (width * map.w) * 0.5 + 0.5) * float(map_side);
     float texel_width = 2.0 * width * map.w / float(map_side);
     vec2 slope = depth_slope(n, vec3(map.z * p.xy / width, 1.0)) * texel_width;

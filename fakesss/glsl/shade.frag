@@ -3,6 +3,7 @@
 #include "common_layers.glsl"
 
 #define LIGHTS 1  // how many shine
+#define CONSTANT_BACKLIGHT 0  // 1: the backlight is the same at any thickness
 #define NEEDS_POSITION 0  // 1: some of them have a place or cast shadows
 #define HAS_SCREEN_OCCLUSION 0  // 1: ambient occlusion comes from the front layer, and that of `surface` is 1
 #define HAS_THICKNESS 0  // 1: the backlight reads the exact second layer; 2: computed here
@@ -33,8 +34,10 @@ uniform sampler2D blurred_thickness;
 #elif HAS_THICKNESS == 1
 uniform sampler2D thickness;
 #endif
-#if HAS_THICKNESS || HAS_BLURRED_THICKNESS
+#if HAS_THICKNESS || HAS_BLURRED_THICKNESS || CONSTANT_BACKLIGHT
 uniform vec3 backlight_colour;     // wb (Kd + Kb)
+#endif
+#if HAS_THICKNESS || HAS_BLURRED_THICKNESS
 uniform float thickness_exponent;  // r
 
 // texture() is faster than texelFetch() on a software rasteriser; at a sample's centre both read that sample.
@@ -71,6 +74,8 @@ void main() {
 #endif
 #if HAS_THICKNESS || HAS_BLURRED_THICKNESS
     colour += backlight(thickness_here(place), thickness_exponent) * backlight_colour;
+#elif CONSTANT_BACKLIGHT
+    colour += backlight_colour;
 #endif
-    shaded = vec4(exposure * colour, 1.0);
+    shaded = vec4(exposure > 0.0 ? exposure * colour : vec3(0.0), 1.0);  // not -0 where the backlight is negative
 }

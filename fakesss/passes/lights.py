@@ -3,9 +3,7 @@
 from collections.abc import Sequence
 from typing import Any
 
-import numpy as np
-
-from fakesss.calls import Setting
+from fakesss.calls import Setting, diffuse_colour, specular_colour
 from fakesss.camera import direction
 from fakesss.illumination import cone, place
 
@@ -29,12 +27,11 @@ def light_defines(setting: Setting) -> dict[str, int]:
 def light_uniforms(setting: Setting) -> dict[str, Any]:
     """What the permutation of `light_defines` needs, as eq. 3.8 and 3.9 multiply it out."""
     lights, material, view = setting.shining, setting.scene.material, setting.view
-    reflectance, arrays, numbers = np.array(material.diffuse), {}, {}
+    arrays, numbers = {}, {}
     arrays["light_place"] = [tuple(place(light, view)) for light in lights]
-    arrays["diffuse_colour"] = [tuple(material.diffuse_contribution * reflectance * light.diffuse) for light in lights]
+    arrays["diffuse_colour"] = [tuple(diffuse_colour(material, light)) for light in lights]
     if not setting.lacking("specular"):
-        highlight = material.specular_contribution * material.specular
-        arrays["specular_colour"] = [tuple(highlight * np.array(light.specular)) for light in lights]
+        arrays["specular_colour"] = [tuple(specular_colour(material, light)) for light in lights]
         numbers["shininess"] = material.shininess
     if any(light.kind != "directional" for light in lights):
         constant = (1.0, 0.0, 0.0)

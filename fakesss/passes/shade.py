@@ -2,9 +2,7 @@
 
 from typing import Any
 
-import numpy as np
-
-from fakesss.calls import Setting, lights_of
+from fakesss.calls import Setting, ambient_colour, backlight_colour, no_backlight
 from fakesss.frame import Frame
 from fakesss.frame_graph import Pass, TextureSpec
 from fakesss.passes import shadow
@@ -49,14 +47,15 @@ def uniforms(setting: Setting) -> dict[str, Any]:
         **(shadow.shadow_uniforms(setting) if setting.casting else {}),
         **({"tangent": setting.view.tangent} if where or not setting.lacking("specular") else {}),
         **({"camera_distance": setting.view.distance} if where else {}),
-        **({} if setting.lacking("backlight") else backlight_uniforms(setting)),
+        **backlight_uniforms(setting),
     }
 
 
 def permutation(setting: Setting) -> dict[str, int]:
     """The defines of `glsl/shade.frag`."""
     shadows = shadow.shadow_defines(setting) if setting.casting else {}
-    return {**light_defines(setting), **shadows, "NEEDS_POSITION": int(needs_position(setting))}
+    needs = {"NEEDS_POSITION": int(needs_position(setting)), "CONSTANT_BACKLIGHT": int(is_constant(setting))}
+    return {**light_defines(setting), **shadows, **needs}
 
 
 def needs_position(setting: Setting) -> bool:
@@ -64,10 +63,15 @@ def needs_position(setting: Setting) -> bool:
     return bool(setting.casting) or any(light.kind != "directional" for light in setting.shining)
 
 
+def is_constant(setting: Setting) -> bool:
+    """Whether there is a backlight, and the same at any thickness."""
+    return bool(setting.lacking("backlight")) and not no_backlight(setting.scene)
+
+
 def thickness_not_read(setting: Setting) -> dict[str, str]:
     """Which thicknesses the picture does not call for, and why."""
-    if no_backlight := setting.lacking("backlight"):
-        return dict.fromkeys(THICKNESSES, no_backlight)
+    if in_vain := setting.lacking("backlight"):
+        return dict.fromkeys(THICKNESSES, in_vain)
     if no_blur := setting.lacking("blur"):
         return {"blurred_thickness": no_blur}
     return {"thickness": "blur.enabled is true, so the softened one is read"}
@@ -82,16 +86,12 @@ def screen_occlusion_not_read(setting: Setting) -> dict[str, str]:
 
 def surface_uniforms(setting: Setting) -> dict[str, Any]:
     """What the ambient term needs, as eq. 3.7 multiplies it out; the lights' ambient intensities add up."""
-    material = setting.scene.material
-    intensity = np.sum([light.ambient for light in lights_of(setting.scene)], axis=0)
-    return {
-        "ambient_colour": tuple(material.ambient * np.array(material.diffuse) * intensity),
-        "exposure": setting.scene.exposure,
-    }
+    return {"ambient_colour": tuple(ambient_colour(setting.scene)), "exposure": setting.scene.exposure}
 
 
 def backlight_uniforms(setting: Setting) -> dict[str, Any]:
-    """What the backlight term needs (eq. 3.10)."""
-    material = setting.scene.material
-    colour = material.backlight * (np.array(material.diffuse) + material.diffuse_weight)
-    return {"backlight_colour": tuple(colour), "thickness_exponent": material.thickness_exponent}
+    """What the backlight term needs (eq. 3.10), nothing without one."""
+    colour = {"backlight_colour": tuple(backlight_colour(setting.scene))}
+    if not setting.lacking("backlight"):
+        return {**colour, "thickness_exponent": setting.scene.material.thickness_exponent}
+    return colour if is_constant(setting) else {}

@@ -3,7 +3,7 @@
 from collections.abc import Hashable, Mapping
 from typing import Any
 
-from fakesss.calls import Setting
+from fakesss.calls import Setting, shining
 from fakesss.frame import Frame
 from fakesss.frame_graph import Pass, TextureSpec
 from fakesss.lights import Light
@@ -16,8 +16,10 @@ FILTERS = {"hard": 0, "pcf": 1, "disc": 2}
 
 
 def layout_of(setting: Setting) -> Atlas:
-    """Where the maps stand."""
-    return atlas(setting.casting, setting.scene.shadow.map_size, setting.scene.size)
+    """Where the maps stand; those of lights that are forced in do not make the others smaller."""
+    scene = setting.scene
+    side = atlas([light for light in shining(scene) if light.shadows], scene.shadow.map_size, scene.size).side
+    return atlas(setting.casting, side, scene.size)
 
 
 def faces_of(light: Light, setting: Setting) -> Cull:
