@@ -13,7 +13,7 @@ from fakesss.camera import View, direction
 from fakesss.gpu import Gpu
 from fakesss.mesh import Mesh
 from fakesss.scene import Scene
-from fakesss.shader_source import feed
+from fakesss.shader_source import Programs, feed
 
 
 class DirectLight:
@@ -26,7 +26,7 @@ class DirectLight:
         context, view = gpu.context, View.of(scene.camera, scene.size)
         self.context, self.scene = context, scene
         self.target = context.framebuffer([context.texture(scene.size, 4)], context.depth_renderbuffer(scene.size))
-        program = gpu.programs.get("direct.vert", "direct.frag")
+        program: Any = Programs(context).get("direct.vert", "direct.frag")  # its own: it lives as long as this
         feed(program, {**view.projection, **light_uniforms(scene, view)})
         content = [
             (context.buffer(np.ascontiguousarray(view.to_eye(mesh.positions))), "3f", "in_eye"),

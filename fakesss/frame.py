@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 
 from fakesss.frame_graph import DEPTH, Bake, Pass, Plan, TextureSpec
 from fakesss.gpu import Gpu
+from fakesss.memory import peak_bytes
 from fakesss.recent import Recent
 from fakesss.shader_source import NOTHING, ShaderError, feed
 
@@ -103,6 +104,7 @@ class Run:
 
     def __call__(self, read: bool = True) -> Outcome:
         """Make every kept node; `read`: wait for the targets and read them back."""
+        self.gpu.pool.allow(peak_bytes(self.plan))
         try:
             for node in self.plan.kept:
                 self._make(node)
@@ -125,6 +127,8 @@ class Run:
             kept = self.gpu.drawn.get((node.name, node.key(inputs)), lambda: self._kept(node, inputs))
             self.live |= {name: texture for name, (_, texture) in kept.items()}
             return
+        if node.key:
+            self.gpu.drawn.clear()  # for the same to be drawn again beside it would take its memory twice
         self._take(node)
         if not self.timed:
             self._draw(node, inputs)

@@ -12,10 +12,13 @@ from pathlib import Path
 from types import MappingProxyType
 from typing import Any
 
+from fakesss.recent import Recent
+
 GLSL = Path(__file__).parent / "glsl"
 VERSION = "#version 330 core"
 INCLUDE = re.compile(r'^\s*#\s*include\s+"([^"]+)"\s*(//.*)?$')
 DEFAULT = re.compile(r"^\s*#\s*define\s+([A-Z][A-Z0-9_]*)\s+(\S+)\s*//\s*\S")
+KEPT = 64  # programs, of 1 to 5 MB on a software rasteriser; a study's pictures take about ten
 NOTHING: Mapping[str, Any] = MappingProxyType({})
 
 
@@ -74,19 +77,20 @@ def declared_defaults(name: str, root: Path = GLSL) -> frozenset[str]:
 
 
 class Programs:
-    """Compiled programs of one context, one per (vertex file, fragment file, defines)."""
+    """The `KEPT` compiled programs of one context used last, one per (vertex file, fragment file, defines).
+
+    One that drops out is freed: who holds on to a program beyond the next `get` needs `Programs` of its own.
+    """
 
     def __init__(self, context: object, root: Path = GLSL) -> None:
         self.context, self.root = context, root
-        self.compiled: dict[tuple[str, str, frozenset[tuple[str, int | float]]], object] = {}
+        self.compiled: Recent[Any] = Recent(KEPT, dispose=lambda program: program.release())
         self.defaults: dict[str, frozenset[str]] = {}
 
     def get(self, vertex: str, fragment: str, defines: Mapping[str, int | float] = NOTHING) -> object:
         """The program of two files; `defines` go to the fragment shader. `ShaderError` names file and line."""
         key = (vertex, fragment, frozenset(defines.items()))
-        if key not in self.compiled:
-            self.compiled[key] = self._compile(vertex, fragment, defines)
-        return self.compiled[key]
+        return self.compiled.get(key, lambda: self._compile(vertex, fragment, defines))
 
     def defaults_of(self, name: str) -> frozenset[str]:
         """`declared_defaults`, read once."""

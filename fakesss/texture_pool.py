@@ -7,15 +7,35 @@ import moderngl
 
 from fakesss.frame_graph import DEPTH, TextureSpec
 
+KEPT = 1 << 28  # bytes: several kinds of picture at 512 x 512 with 3 x 3 samples
+
+Attached = tuple[str, int]  # kind and OpenGL name of what a framebuffer is made of
+
+
+def attached(thing: Any) -> Attached:
+    """Textures and depth buffers are numbered apart."""
+    return type(thing).__name__, thing.glo
+
 
 @dataclass
 class TexturePool:
-    """Transient float32 textures by spec. What is taken filters by nearest and clamps, whoever had it before."""
+    """Transient float32 textures by spec. What is taken filters by nearest and clamps, whoever had it before.
+
+    Before something is made, what was not used for longest is freed, so that all that was made takes no more than
+    `KEPT` bytes, or what the picture at hand needs if that is more (`allow`).
+    """
 
     context: Any
+    limit: int = KEPT  # bytes
+    held: int = 0  # bytes of all that was made and not freed, handed out or not
     free: dict[TextureSpec, list[Any]] = field(default_factory=dict)
     depth_buffers: dict[tuple[int, int], Any] = field(default_factory=dict)
-    framebuffers: dict[tuple[int | str, ...], Any] = field(default_factory=dict)
+    framebuffers: dict[tuple[Attached, ...], Any] = field(default_factory=dict)
+    used: dict[TextureSpec | tuple[int, int], None] = field(default_factory=dict)  # in the order of their last use
+
+    def allow(self, needed: int) -> None:
+        """Set the limit for a picture that needs so many bytes from an empty pool (`memory.peak_bytes`)."""
+        self.limit = max(KEPT, needed)
 
     def take(self, spec: TextureSpec) -> Any:
         """A texture of this spec with unspecified contents."""
@@ -30,17 +50,22 @@ class TexturePool:
         return texture
 
     def _made(self, spec: TextureSpec) -> Any:
+        self._make_room(spec.bytes)
         if spec.components == DEPTH:
-            return self.context.depth_texture(spec.size)
-        return self.context.texture(spec.size, spec.components, dtype="f4")
+            texture = self.context.depth_texture(spec.size)
+        else:
+            texture = self.context.texture(spec.size, spec.components, dtype="f4")
+        self.held += spec.bytes
+        return texture
 
     def give_back(self, spec: TextureSpec, texture: Any) -> None:
         """Take back a texture of `take`."""
+        self._note(spec)
         self.free.setdefault(spec, []).append(texture)
 
     def framebuffer(self, colours: list[Any], depth: Any) -> Any:
         """A framebuffer over textures and a depth buffer or None; reused while they live."""
-        key = (*(texture.glo for texture in colours), type(depth).__name__, getattr(depth, "glo", 0))
+        key = tuple(attached(thing) for thing in (*colours, depth) if thing is not None)
         if key not in self.framebuffers:
             self.framebuffers[key] = self.context.framebuffer(colours, depth)
         return self.framebuffers[key]
@@ -48,14 +73,42 @@ class TexturePool:
     def depth_buffer(self, size: tuple[int, int]) -> Any:
         """The depth buffer of this size for a pass that keeps it to itself."""
         if size not in self.depth_buffers:
+            self._make_room(TextureSpec(size, DEPTH).bytes)
             self.depth_buffers[size] = self.context.depth_renderbuffer(size)
+            self.held += TextureSpec(size, DEPTH).bytes
+        self._note(size)
         return self.depth_buffers[size]
 
     def release(self) -> None:
         """Free everything that is not handed out: after a change of picture size the old sizes are dead weight."""
-        spare = [texture for textures in self.free.values() for texture in textures]
-        for thing in (*self.framebuffers.values(), *self.depth_buffers.values(), *spare):
+        for kind in tuple(self.used):
+            self._free_all(kind)
+
+    def _note(self, kind: TextureSpec | tuple[int, int]) -> None:
+        self.used.pop(kind, None)
+        self.used[kind] = None
+
+    def _make_room(self, size: int) -> None:
+        """Free what was not used for longest until `size` more bytes may be made."""
+        for kind in tuple(self.used):
+            if self.held + size <= self.limit:
+                return
+            self._free_all(kind)
+
+    def _free_all(self, kind: TextureSpec | tuple[int, int]) -> None:
+        """Free what is not handed out of textures of a spec, or the depth buffer of a size."""
+        if isinstance(kind, TextureSpec):
+            things, size = self.free.pop(kind, []), kind.bytes
+        else:
+            things = [self.depth_buffers.pop(kind)] if kind in self.depth_buffers else []
+            size = TextureSpec(kind, DEPTH).bytes
+        for thing in things:
+            self._forget_framebuffers(attached(thing))
             thing.release()
-        self.free.clear()
-        self.depth_buffers.clear()
-        self.framebuffers.clear()
+            self.held -= size
+        del self.used[kind]
+
+    def _forget_framebuffers(self, part: Attached) -> None:
+        """A name is given again after it was freed, and a framebuffer would outlive what it draws into."""
+        for key in [key for key in self.framebuffers if part in key]:
+            self.framebuffers.pop(key).release()

@@ -9,6 +9,8 @@ def test_keeps_the_most_recently_used_and_disposes_of_the_rest() -> None:
     recent.get("a", lambda: "made twice")
     recent.get("c", lambda: "C")
     assert gone == ["B"]
-    assert recent.get("a", lambda: "made twice") == "A"
+    recent.get("d", lambda: gone.pop() and "D")  # what drops out is gone before the new one is made
+    assert gone == ["B"]
+    assert recent.get("c", lambda: "made twice") == "C"
     recent.clear()
-    assert sorted(gone) == ["A", "B", "C"]
+    assert sorted(gone) == ["B", "C", "D"]

@@ -176,11 +176,11 @@ def test_as_published_is_shown_without_encoding(renderer: Renderer) -> None:
 def test_a_sweep_uploads_and_bakes_once(renderer: Renderer) -> None:
     scene = Scene(object="torus:4000", size=(32, 32))
     renderer.render(scene)
-    held = len(renderer.gpu.uploads.values), len(renderer.gpu.programs.compiled)
+    held = len(renderer.gpu.uploads.values), list(renderer.gpu.programs.compiled.values)
     for level in np.linspace(0.1, 2, 9):
         drawn = renderer.render(scene.replace({"material.backlight": float(level)}))
         assert all(made.cached for made in drawn.baked.values())
-    assert (len(renderer.gpu.uploads.values), len(renderer.gpu.programs.compiled)) == held
+    assert (len(renderer.gpu.uploads.values), list(renderer.gpu.programs.compiled.values)) == held
 
 
 def test_a_turning_camera_rewrites_its_buffers(renderer: Renderer) -> None:

@@ -1,4 +1,5 @@
 from pathlib import Path
+from typing import Any
 
 import pytest
 
@@ -72,7 +73,20 @@ def test_programs_are_compiled_once_per_defines(gpu: Gpu, tmp_path: Path) -> Non
     programs = Programs(gpu.context, root)
     assert programs.get("v.vert", "f.frag") is programs.get("v.vert", "f.frag")
     assert programs.get("v.vert", "f.frag", {"VALUE": 2.0}) is programs.get("v.vert", "f.frag", {"VALUE": 2.0})
-    assert len(programs.compiled) == 2
+    assert len(programs.compiled.values) == 2
+
+
+@pytest.mark.gl
+def test_a_program_that_drops_out_is_freed_and_compiled_again(gpu: Gpu, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Each takes megabytes, and a number of samples or lights makes a new one."""
+    monkeypatch.setattr("fakesss.shader_source.KEPT", 2)
+    programs = Programs(gpu.context)
+    made: list[Any] = []
+    for samples in (1, 2, 3, 1):
+        made.append(programs.get("fullscreen.vert", "resolve.frag", {"SAMPLES": samples}))
+        feed(made[-1], {"shaded": 0})
+    assert list(programs.compiled.values.values()) == made[2:]
+    assert [type(program.mglo).__name__ == "InvalidObject" for program in made] == [True, True, False, False]
 
 
 @pytest.mark.gl

@@ -22,7 +22,7 @@ SETTLING = {"Context.framebuffer"}  # pooled textures are combined anew until ev
 PATHS = {
     "material.thickness_exponent": [25, 18, 30, 5],
     "material.backlight": [1.2, 0.8, 1.6, 0.1],
-    "material.diffuse": [[1, 0.5, 0.2], [0.2, 0.5, 1], [0, 0, 0]],
+    "material.diffuse": [[1, 0.5, 0.2], [0.2, 0.5, 1], [0, 0.1, 0]],
     "light.azimuth": [0, 90, 180],
     "background": [[0, 0, 0], [1, 1, 1]],
 }
