@@ -42,6 +42,7 @@ def render(scene: str, changes: tuple[str, ...], size: str | None, out: str, vie
     for warning in result["warnings"]:
         say(warning)
     done(result, as_json, f"{result['image']}: {result['width']}x{result['height']}, {result['gl_renderer']}")
+    sys.exit(1 if result["non_finite"] else 0)
 
 
 @commands.command()

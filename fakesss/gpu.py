@@ -106,17 +106,17 @@ def first_context() -> Any:
 
 
 @contextmanager
-def reporting_memory(size: tuple[int, int], samples: int) -> Iterator[None]:
-    """Turn the driver's "out of memory" and its refusal of huge textures and framebuffers into one sentence."""
+def reporting_memory(what: str, mend: str) -> Iterator[None]:
+    """Turn the driver's "out of memory" and its refusal of huge textures and framebuffers into one sentence.
+
+    `what` takes most memory, as a plural; `mend` makes it smaller.
+    """
     try:
         yield
     except (moderngl.Error, MemoryError) as error:
         if not isinstance(error, MemoryError) and not any(word in str(error) for word in REFUSALS):
             raise
-        raise BadInput(
-            f"OpenGL: {size[0]}x{size[1]} pixels with supersampling {samples} do not fit into memory ({error}); "
-            "lower size or supersampling"
-        ) from error
+        raise BadInput(f"OpenGL: {what} do not fit into memory ({error}); {mend}") from error
 
 
 _threads = threading.local()

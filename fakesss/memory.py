@@ -10,6 +10,12 @@ def written_bytes(node: Node) -> int:
     return sum(spec.bytes for spec in node.writes.values()) if isinstance(node, Pass) else 0
 
 
+def shadow_maps(plan: Plan) -> TextureSpec | None:
+    """The texture of all shadow maps, if the plan draws one."""
+    drawn = (node.writes for node in plan.kept if isinstance(node, Pass))
+    return next((writes["shadow_maps"] for writes in drawn if "shadow_maps" in writes), None)
+
+
 def peak_bytes(plan: Plan) -> int:
     """Bytes of all textures and depth buffers that drawing a plan once takes from an empty pool.
 

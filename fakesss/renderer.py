@@ -11,8 +11,9 @@ from numpy.typing import NDArray
 
 from fakesss import gpu as opengl
 from fakesss.frame import Made, Outcome, Run
-from fakesss.frame_graph import FrameGraphError, Plan
+from fakesss.frame_graph import FrameGraphError, Plan, TextureSpec
 from fakesss.image_io import check_output, write_image
+from fakesss.memory import peak_bytes, shadow_maps
 from fakesss.pipeline import NONE, build, samples_of
 from fakesss.problem import BadInput
 from fakesss.recent import Recent
@@ -38,7 +39,8 @@ class Rendering:
     @cached_property
     def warnings(self) -> tuple[str, ...]:
         """One sentence each."""
-        return (*self.notes, *picture_warnings(self.image, self.alpha))
+        wrong = (not_finite(self.non_finite),) if self.non_finite else ()
+        return (*wrong, *self.notes, *picture_warnings(self.image, self.alpha))
 
     @cached_property
     def non_finite(self) -> int:
@@ -54,6 +56,7 @@ class Renderer:
         self.gpu = gpu or opengl.shared()
         self.bakes: Recent[Any] = Recent(BAKES_KEPT)
         self.buffer_size: tuple[int, int] | None = None
+        self.largest_texture = int(self.gpu.context.info["GL_MAX_TEXTURE_SIZE"])  # pixels a side
 
     def render(self, scene: Scene, timed: bool = False, forced: frozenset[str] = NONE) -> Rendering:
         """The picture of `scene`. Raises `BadInput` for what a user can mend.
@@ -88,21 +91,43 @@ class Renderer:
         mesh = loaded.values["mesh"]
         solid = self.bakes.get(("solid", mesh.sha256), lambda: is_solid(mesh))
         plan = build(scene, samples, solid, forced).compile(targets)
-        with opengl.reporting_memory(scene.size, samples):
+        if not (maps := shadow_maps(plan)):
+            self.gpu.drawn.clear()
+        elif max(maps.size) > self.largest_texture:
+            raise too_large_maps(maps, self.largest_texture)
+        with opengl.reporting_memory(*what_takes_most(plan, scene, samples)):
             outcome = Run(plan, self.gpu, self.bakes, timed)()
         return plan, replace(outcome, baked={**outcome.baked, **loaded.baked})
 
     def _fit(self, scene: Scene, samples: int) -> None:
         size = (scene.size[0] * samples, scene.size[1] * samples)
-        largest = int(self.gpu.context.info["GL_MAX_TEXTURE_SIZE"])
-        if max(size) > largest:
+        if max(size) > self.largest_texture:
             raise BadInput(
                 f"scene: size {scene.size[0]}x{scene.size[1]} with supersampling {samples} needs {max(size)} samples "
-                f"in a row, this OpenGL has {largest}; lower size or supersampling"
+                f"in a row, this OpenGL has {self.largest_texture}; lower size or supersampling"
             )
         if size != self.buffer_size:
+            self.gpu.drawn.clear()
             self.gpu.pool.release()
             self.buffer_size = size
+
+
+def too_large_maps(maps: TextureSpec, largest: int) -> BadInput:
+    """What is to be said of shadow maps that are no texture here."""
+    return BadInput(
+        f"scene: shadow.map_size: the shadow maps need a texture of {maps.size[0]}x{maps.size[1]} texels, this OpenGL "
+        f"has {largest} a side; lower shadow.map_size or give fewer lights shadows"
+    )
+
+
+def what_takes_most(plan: Plan, scene: Scene, samples: int) -> tuple[str, str]:
+    """The larger of the picture's textures and the shadow maps with their depth buffer, and what makes it smaller."""
+    maps = shadow_maps(plan)
+    if maps and 4 * maps.bytes > peak_bytes(plan):
+        what = f"shadow maps of {maps.size[0]}x{maps.size[1]} texels"
+        return what, "lower shadow.map_size or give fewer lights shadows"
+    what = f"{scene.size[0]}x{scene.size[1]} pixels with supersampling {samples}"
+    return what, "lower size or supersampling"
 
 
 def upright(value: Any) -> Any:
@@ -115,6 +140,11 @@ def idle_settings(scene: Scene, plan: Plan) -> tuple[str, ...]:
     if scene.layers.faces is None or "coarse_mesh" in (node.name for node in plan.kept):
         return ()
     return ("layers.faces does nothing here: the picture needs no second layer of a solid.",)
+
+
+def not_finite(pixels: int) -> str:
+    """What is wrong with a picture, and what can be done about it."""
+    return f"{pixels} pixels hold a value that is not finite, a fault of the renderer; change the scene a little."
 
 
 def picture_warnings(image: Float32, alpha: bool) -> tuple[str, ...]:
@@ -163,7 +193,7 @@ def render(scene: Scene, target: str = PICTURE) -> Any:
 def render_file(scene: Scene, out: str | Path, views: bool = False) -> dict[str, Any]:
     """Write the picture of `scene` (or with `views` the contact sheet of its intermediates) to a .png or .exr file.
 
-    Returns the contract's `render` document.
+    Returns the contract's `render` document. Pixels that are not finite are among its warnings, and black in a PNG.
     """
     path = check_output(out)
     drawn = shared_renderer().render(scene, timed=True)
@@ -172,6 +202,8 @@ def render_file(scene: Scene, out: str | Path, views: bool = False) -> dict[str,
         from fakesss.inspect import contact_sheet  # loads matplotlib
 
         picture = contact_sheet(scene.replace({"alpha": False}))
+    if path.suffix.lower() == ".png" and drawn.non_finite:
+        picture = np.nan_to_num(picture)  # a PNG has no word for it
     write_image(path, picture, alpha=scene.alpha and not views)
     height, width = picture.shape[:2]
     return {

@@ -16,14 +16,12 @@ from numpy.typing import ArrayLike, NDArray
 from fakesss.brdf import Array
 from fakesss.camera import NEAREST, SPHERE_MARGIN, View, direction
 from fakesss.lights import Light
-from fakesss.problem import BadInput
 
 WIDEST = 60.0  # degrees: half angle of one perspective map; beyond it the texels at the edge grow too long
 CUBE_HALF_WIDTH = 1.25  # of a side's map at depth 1: a quarter more than the side, for taps across its edge
 TEXELS_PER_PIXEL = 4  # of the picture's longer side, where the scene gives no size
 LARGEST = 4096  # texels, side of such a map
 MOST_TEXELS = 8192  # side of all maps together, where the scene gives no size
-TEXTURE = 16384  # texels: the longest side of a texture
 STEEPEST = 30.0  # slope, depth per length across, from which on a surface counts as no steeper
 REACH = 0.2  # how far before a surface its own plane is followed
 FLIP = np.diag([1.0, 1.0, -1.0])  # between z towards the viewer and depth away from it
@@ -115,18 +113,10 @@ class Atlas:
 
 
 def atlas(lights: Sequence[Light], map_size: int | None, picture: tuple[int, int]) -> Atlas:
-    """Room for the maps of `lights` (those that cast shadows); `picture` is its size in pixels.
-
-    Raises `BadInput` if the maps do not fit into one texture.
-    """
+    """Room for the maps of `lights` (those that cast shadows); `picture` is its size in pixels."""
     maps = sum(1 if light.kind == "directional" or half_angle(light) <= WIDEST else 6 for light in lights)
     columns = max(math.ceil(math.sqrt(maps)), 1)
     side = map_size or max(min(TEXELS_PER_PIXEL * max(picture), LARGEST, MOST_TEXELS // columns), 16)
-    if columns * side > TEXTURE:
-        raise BadInput(
-            f"scene: shadow.map_size: {side}: {maps} shadow maps of that size need a texture of {columns * side} "
-            f"texels a side; give at most {TEXTURE // columns}, or fewer lights with shadows"
-        )
     return Atlas(maps, side, columns)
 
 

@@ -74,13 +74,18 @@ def draw(stimulus: Stimulus, *, size: tuple[int, int], folder: Path) -> Callable
         return partial(read_made_elsewhere, stimulus, size, folder)
     from fakesss.renderer import shared_renderer
 
-    return partial(encoded, shared_renderer().render(stimulus.scene.relative_to(folder)))
+    return partial(encoded, stimulus.id, shared_renderer().render(stimulus.scene.relative_to(folder)))
 
 
-def encoded(rendering: "Rendering") -> Drawn:
-    """The picture as PNG bytes."""
+def encoded(identity: str, rendering: "Rendering") -> Drawn:
+    """The picture as PNG bytes; `BadInput` if a pixel of it is no picture."""
     from fakesss.image_io import encode_png
 
+    if rendering.non_finite:
+        raise BadInput(
+            f"study.toml: {identity}: {rendering.non_finite} pixels hold a value that is not finite, a fault of the "
+            "renderer; change this picture's levels a little"
+        )
     height, width = rendering.image.shape[:2]
     passes = tuple(timing["name"] for timing in rendering.passes)
     return Drawn(encode_png(rendering.image), width, height, passes, rendering.warnings)

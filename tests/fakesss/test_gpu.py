@@ -3,12 +3,16 @@
 import subprocess
 import sys
 import threading
+from typing import Any
 
 import moderngl
 import pytest
 
 from fakesss.gpu import Gpu, renderer_facts, reporting_memory, shared, warm_up_timer
+from fakesss.inspect import compiled
 from fakesss.problem import BadInput
+from fakesss.renderer import Renderer, what_takes_most
+from fakesss.scene import Scene
 
 ASK = """
 import sys
@@ -63,6 +67,31 @@ def test_a_fresh_contexts_first_times_are_plausible(gpu: Gpu) -> None:
 @pytest.mark.parametrize("said", ["cannot create texture", "the framebuffer is not complete (INCOMPLETE_ATTACHMENT)"])
 def test_what_does_not_fit_is_one_sentence(said: str) -> None:
     """The second is how Mesa refuses 5000x5000 pixels at supersampling 3."""
-    expected = pytest.raises(BadInput, match=r"5000x5000 pixels with supersampling 3 do not fit .*; lower size")
-    with expected, reporting_memory((5000, 5000), 3):
+    expected = pytest.raises(BadInput, match=r"5000x5000 pixels do not fit .*; lower size")
+    with expected, reporting_memory("5000x5000 pixels", "lower size"):
         raise moderngl.Error(said)
+
+
+@pytest.mark.parametrize(
+    ("changes", "what", "mend"),
+    [
+        ({}, "512x512 pixels with supersampling 3", "size or supersampling"),
+        ({"light.shadows": True}, "512x512 pixels with supersampling 3", "size or supersampling"),
+        ({"light.shadows": True, "shadow.map_size": 16384}, "shadow maps of 16384x16384 texels", "shadow.map_size or"),
+        ({"shadow.map_size": 16384}, "512x512 pixels with supersampling 3", "size or supersampling"),
+    ],
+    ids=str,
+)
+def test_what_takes_most_memory_is_named(changes: dict[str, Any], what: str, mend: str) -> None:
+    scene = Scene(object="sphere:4000").replace(changes)
+    named, lower = what_takes_most(compiled(scene), scene, scene.supersampling)
+    assert named == what and mend in lower
+
+
+@pytest.mark.gl
+def test_shadow_maps_are_held_to_what_this_opengl_has(renderer: Renderer, monkeypatch: pytest.MonkeyPatch) -> None:
+    scene = Scene(object="sphere:4000", size=(16, 16)).replace({"light.shadows": True, "shadow.map_size": 2048})
+    assert renderer.render(scene).non_finite == 0
+    monkeypatch.setattr(renderer, "largest_texture", 1024)
+    with pytest.raises(BadInput, match=r"shadow\.map_size: .* 2048x2048 texels, this OpenGL has 1024 a side; lower"):
+        renderer.render(scene)

@@ -5,9 +5,8 @@ import pytest
 
 from fakesss.camera import View
 from fakesss.lights import Light
-from fakesss.problem import BadInput
 from fakesss.scene import Scene
-from fakesss.shadow_maps import SIDES, TEXTURE, atlas, is_outside, map_views, slope_bias
+from fakesss.shadow_maps import SIDES, atlas, is_outside, map_views, slope_bias
 
 LIGHTS = [
     Light(),
@@ -60,14 +59,6 @@ def test_the_default_map_is_four_times_the_picture_at_most_4096() -> None:
     sides = [atlas([Light()], None, size).side for size in ((512, 300), (100, 700), (4000, 10), (1, 1))]
     assert sides == [2048, 2800, 4096, 16]
     assert atlas([Light()], 333, (512, 512)).side == 333
-
-
-def test_maps_that_do_not_fit_are_one_sentence() -> None:
-    inside = Light(kind="point", distance=0.5)
-    with pytest.raises(
-        BadInput, match=rf"shadow\.map_size: 9000: 6 shadow maps.*give at most {TEXTURE // 3}, or fewer"
-    ):
-        atlas([inside], 9000, (512, 512))
 
 
 def test_the_bias_follows_the_slope_between_once_and_twice() -> None:
