@@ -133,8 +133,7 @@ def scene_named(name: str, changes: tuple[str, ...], size: str | None) -> Any:
         raise is_folder(path)
     else:
         scene = Scene(object=name)
-    overrides = dict(setting(text) for text in changes)
-    scene = scene.replace(overrides, "--set") if overrides else scene
+    scene = scene.replace([setting(text) for text in changes], "--set") if changes else scene
     return scene if size is None else scene.replace({"size": pixels(size)}, f'--size "{size}"')
 
 

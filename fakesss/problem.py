@@ -24,7 +24,12 @@ class Strict(BaseModel):
 
 
 Model = TypeVar("Model", bound=BaseModel)
-COMPARISONS = (
+WORDS = (
+    ("Input should be", "must be"),
+    ("Tuple should have", "must have"),
+    (" after validation", ""),
+    ("a valid array", "a list"),
+    ("an object", "a table"),
     ("greater than or equal to", ">="),
     ("less than or equal to", "<="),
     ("greater than", ">"),
@@ -68,21 +73,28 @@ def first_sentence(error: ValidationError, model: type[BaseModel]) -> str:
         return f"{dotted(where)}: unknown key; {nearest(str(where[-1]), names)}"
     if detail["type"] == "missing":
         return f"{dotted(where)}: is missing; add it"
-    message = detail["msg"].removeprefix("Value error, ").removeprefix("Input should be ")
-    for words, sign in COMPARISONS:
-        message = message.replace(words, sign)
     shown = f"{detail['input']!r}: " if not isinstance(detail["input"], Mapping) else ""
-    must = message if detail["type"] == "value_error" else f"must be {message}"
     key = f"{dotted(where)}: " if where else ""
-    return f"{key}{shown}{must}"
+    return f"{key}{shown}{in_our_words(detail['msg'])}"
+
+
+def in_our_words(message: str) -> str:
+    """One of pydantic's messages, in the words of our pages."""
+    message = message.removeprefix("Value error, ")
+    for words, ours in WORDS:
+        message = message.replace(words, ours)
+    return message
 
 
 def dotted(where: Sequence[int | str]) -> str:
-    """A pydantic location as a person writes it: `factor[2].levels` (the first entry is [1])."""
+    """A pydantic location as a person writes it: `factor[2].levels` (the first entry is [1]), `lights.0.kind`.
+
+    A light is counted as the scene's paths count it, from 0.
+    """
     text = ""
-    for part in where:
+    for before, part in zip(["", *where], where, strict=False):
         if isinstance(part, int):
-            text += f"[{part + 1}]"
+            text += f".{part}" if before == "lights" else f"[{part + 1}]"
         else:
             text += f".{part}" if text else part
     return text

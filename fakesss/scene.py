@@ -9,7 +9,7 @@ import hashlib
 import json
 import re
 import tomllib
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from pathlib import Path
 from typing import Annotated, Any, Literal, Self
 
@@ -165,15 +165,20 @@ class Scene(Strict):
 
         return self.model_copy(update={"object": str(folder / self.object)}) if is_mesh_file(self.object) else self
 
-    def replace(self, changes: Mapping[str, Any], source: str = "scene") -> Self:
-        """A copy with `{"material.backlight": 0.8}` applied and checked again."""
+    def replace(self, changes: Mapping[str, Any] | Sequence[tuple[str, Any]], source: str = "scene") -> Self:
+        """A copy with `{"material.backlight": 0.8}` applied and checked again.
+
+        The changes are made in their order: one may name a light that an earlier one added. Pairs may change one
+        field again.
+        """
         data = self.model_dump()
-        for path, value in changes.items():
-            *parents, leaf = check_path(path, source, self).split(".")
+        for path, value in changes.items() if isinstance(changes, Mapping) else changes:
+            *parents, leaf = check_path(path, source, len(data["lights"])).split(".")
             place: Any = data
             for parent in parents:
                 place = place[int(parent) if parent.isdecimal() else parent]
-            place[leaf] = value
+            # later paths reach into the lights, so they must be lights; other fields may depend on later changes
+            place[leaf] = self.from_dict({path: value}, source).model_dump()[path] if path == "lights" else value
         return self.from_dict(data, source)
 
     def at(self, path: str) -> Any:
@@ -216,12 +221,12 @@ def light_paths(number: int) -> Iterator[str]:
         yield from scene_paths(Light, f"lights.{index}.")
 
 
-def check_path(path: str, source: str, scene: Scene) -> str:
-    """`path` if it is a field of `scene`, otherwise `BadInput` with the nearest valid one."""
-    known = [*scene_paths(), *light_paths(len(scene.lights))]
+def check_path(path: str, source: str, lights: int) -> str:
+    """`path` if it is a field of a scene with so many further lights, otherwise `BadInput` with the nearest one."""
+    known = [*scene_paths(), *light_paths(lights)]
     if path in known:
         return path
-    if re.match(r"lights\.\d+(\.|$)", path) and int(path.split(".")[1]) >= len(scene.lights):
-        has = f"has {len(scene.lights)} of them" if scene.lights else "has none"
+    if re.match(r"lights\.\d+(\.|$)", path) and int(path.split(".")[1]) >= lights:
+        has = f"has {lights} of them" if lights else "has none"
         raise BadInput(f'{source}: path "{path}": counts from lights.0, and the scene {has}; add a [[lights]] table')
     raise BadInput(f'{source}: path "{path}" is no scene field; {nearest(path, known)}')

@@ -121,7 +121,7 @@ def check_opaque(scene: Scene, where: str) -> None:
 def check_factor(factor: Factor, base: Scene, source: str) -> None:
     """Every level of `factor` gives a valid scene, or `BadInput` naming factor, level and mend."""
     where = f'{source}: factor "{factor.name}"'
-    check_path(factor.path, where, base)
+    check_path(factor.path, where, len(base.lights))
     seen: list[Any] = []
     for level in factor.levels:
         try:

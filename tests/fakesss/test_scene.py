@@ -6,7 +6,7 @@ from typing import Any
 import pytest
 import tomli_w
 
-from fakesss.lights import MOST_LIGHTS, Light
+from fakesss.lights import MOST_LIGHTS
 from fakesss.problem import BadInput
 from fakesss.scene import Scene, check_path, scene_paths
 
@@ -48,8 +48,8 @@ def test_what_is_wrong_is_named(tmp_path: Path, text: str, sentence: str) -> Non
 
 def test_an_unknown_path_gets_its_nearest() -> None:
     with pytest.raises(BadInput, match=r'did you mean "material.backlight"\?'):
-        check_path("material.backlite", "study.toml", Scene())
-    assert check_path("blur.step", "study.toml", Scene()) == "blur.step"
+        check_path("material.backlite", "study.toml", 0)
+    assert check_path("blur.step", "study.toml", 0) == "blur.step"
 
 
 def test_every_path_can_be_replaced_by_its_own_value() -> None:
@@ -94,7 +94,7 @@ def test_paths_of_further_lights() -> None:
 )
 def test_wrong_paths_name_the_nearest(path: str, sentence: str) -> None:
     with pytest.raises(BadInput) as raised:
-        check_path(path, "study.toml", Scene(lights=(Light(), Light())))
+        check_path(path, "study.toml", 2)
     assert str(raised.value).startswith("study.toml: ") and sentence in str(raised.value)
 
 
@@ -106,12 +106,47 @@ def test_no_further_light_at_all_is_said() -> None:
 @pytest.mark.parametrize(
     ("lights", "sentence"),
     [
-        ([{}] * MOST_LIGHTS, "lights: .*at most 31"),
-        ([{"attenuation": (0, 0, 0)}], r"lights\[1\]: attenuation \(0, 0, 0\) divides by zero"),
-        ([{"cutoff": 0.0}], r"lights\[1\]\.cutoff: 0\.0: must be >= 0\.1"),
-        ([{"kind": "area"}], r"lights\[1\]\.kind: 'area': must be 'directional', 'point' or 'spot'"),
+        ([{}] * MOST_LIGHTS, "lights: .*: must have at most 31 items, not 32$"),
+        ([{"attenuation": (0, 0, 0)}], r"lights\.0: attenuation \(0, 0, 0\) divides by zero"),
+        ([{}, {"cutoff": 0.0}], r"^scene: lights\.1\.cutoff: 0\.0: must be >= 0\.1"),
+        ([{"kind": "area"}], r"lights\.0\.kind: 'area': must be 'directional', 'point' or 'spot'"),
     ],
 )
 def test_lights_that_cannot_be(lights: list[dict[str, Any]], sentence: str) -> None:
     with pytest.raises(BadInput, match=sentence):
         Scene().replace({"lights": lights})
+
+
+def test_a_change_may_name_a_light_that_one_before_it_added() -> None:
+    changed = Scene().replace({"lights": [{"azimuth": 20.0}], "lights.0.kind": "spot"})
+    assert [(light.kind, light.azimuth) for light in changed.lights] == [("spot", 20.0)]
+
+
+@pytest.mark.parametrize(
+    ("lights", "sentence"),
+    [
+        ([], "counts from lights.0, and the scene has none"),
+        (5, "lights: 5: must be a list"),
+        ([5], "lights.0: 5: must be a table"),
+        (None, "lights: None: must be a list"),
+        ([{"kind": "foo"}], "lights.0.kind: 'foo': must be 'directional'"),
+    ],
+)
+def test_a_change_may_not_name_a_light_that_one_before_it_took_away(lights: Any, sentence: str) -> None:
+    with pytest.raises(BadInput) as raised:
+        Scene().replace({"lights": [{}]}).replace({"lights": lights, "lights.0.kind": "spot"}, "--set")
+    assert str(raised.value).startswith("--set: ") and sentence in str(raised.value)
+
+
+def test_only_all_changes_together_have_to_fit() -> None:
+    cut = Scene().replace({"camera.near": 1.0, "camera.far": 2.0})
+    moved = cut.replace({"camera.near": 3.0, "lights": [{}], "camera.far": 4.0})
+    assert (moved.camera.near, moved.camera.far, len(moved.lights)) == (3.0, 4.0, 1)
+
+
+@pytest.mark.parametrize("size", [[5], [5, 5, 5], 5])
+def test_a_list_of_another_length(size: Any) -> None:
+    with pytest.raises(
+        BadInput, match=r"^scene: size(\[2\])?: .*(is missing; add it|must have at most 2 items|a list)"
+    ):
+        Scene().replace({"size": size})

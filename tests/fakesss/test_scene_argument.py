@@ -48,3 +48,25 @@ def test_scenes_are_what_they_were(study: Path) -> None:
     assert scene_named("figure", (), None).object == "figure"  # a folder of that name does not stand in the way
     scene = scene_named("scene.toml", ("material.backlight=0.5", "size=[7, 7]"), "3x4")
     assert (scene.object, scene.material.backlight, scene.size) == ("torus", 0.5, (3, 4))
+
+
+@pytest.mark.parametrize(
+    ("changes", "sentence"),
+    [
+        (("lights=[]", "lights.0.kind=spot"), "counts from lights.0, and the scene has none"),
+        (("lights=5", "lights.0.kind=spot"), "lights: 5: must be a list"),
+        (("lights.0.kind=foo",), "--set: lights.0.kind: 'foo': must be 'directional', 'point' or 'spot'"),
+    ],
+)
+def test_changes_are_made_one_after_the_other(study: Path, changes: tuple[str, ...], sentence: str) -> None:
+    (study.parent / "lit.toml").write_text("[[lights]]\n", encoding="utf-8")
+    with pytest.raises(BadInput) as raised:
+        scene_named("lit.toml", changes, None)
+    assert sentence in str(raised.value)
+
+
+def test_a_change_builds_on_the_one_before_it(study: Path) -> None:
+    added = scene_named("scene.toml", ('lights=[{kind="point"}]', "lights.0.kind=spot"), None)
+    assert [light.kind for light in added.lights] == ["spot"]
+    last = scene_named("scene.toml", ("lights=[{}]", "lights.0.kind=spot", "lights=[{azimuth=5.0}]"), None)
+    assert [(light.kind, light.azimuth) for light in last.lights] == [("directional", 5.0)]
