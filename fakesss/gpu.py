@@ -53,6 +53,11 @@ class Gpu:
         for spec, texture in textures.values():
             self.pool.give_back(spec, texture)
 
+    def keep_drawn(self, spec: TextureSpec | None) -> None:
+        """Give back what an earlier picture left, unless it left a texture like the one that this picture has."""
+        if spec not in (kept for textures in self.drawn.values.values() for kept, _ in textures.values()):
+            self.drawn.clear()
+
     def timer(self, name: str) -> Any:
         """The timer query of this name: moderngl cannot release one, so each is made once."""
         if name not in self.timers:

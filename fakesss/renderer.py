@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from fakesss import gpu as opengl
 from fakesss.frame import Made, Outcome, Run
 from fakesss.frame_graph import FrameGraphError, Plan, TextureSpec
-from fakesss.image_io import check_output, write_image
+from fakesss.image_io import check_picture, write_image
 from fakesss.memory import peak_bytes, shadow_maps
 from fakesss.pipeline import NONE, build, samples_of
 from fakesss.problem import BadInput
@@ -91,9 +91,9 @@ class Renderer:
         mesh = loaded.values["mesh"]
         solid = self.bakes.get(("solid", mesh.sha256), lambda: is_solid(mesh))
         plan = build(scene, samples, solid, forced).compile(targets)
-        if not (maps := shadow_maps(plan)):
-            self.gpu.drawn.clear()
-        elif max(maps.size) > self.largest_texture:
+        maps = shadow_maps(plan)
+        self.gpu.keep_drawn(maps)
+        if maps and max(maps.size) > self.largest_texture:
             raise too_large_maps(maps, self.largest_texture)
         with opengl.reporting_memory(*what_takes_most(plan, scene, samples)):
             outcome = Run(plan, self.gpu, self.bakes, timed)()
@@ -195,7 +195,7 @@ def render_file(scene: Scene, out: str | Path, views: bool = False) -> dict[str,
 
     Returns the contract's `render` document. Pixels that are not finite are among its warnings, and black in a PNG.
     """
-    path = check_output(out)
+    path = check_picture(out)
     drawn = shared_renderer().render(scene, timed=True)
     picture: NDArray[Any] = drawn.image
     if views:

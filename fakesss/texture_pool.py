@@ -34,8 +34,10 @@ class TexturePool:
     used: dict[TextureSpec | tuple[int, int], None] = field(default_factory=dict)  # in the order of their last use
 
     def allow(self, needed: int) -> None:
-        """Set the limit for a picture that needs so many bytes from an empty pool (`memory.peak_bytes`)."""
-        self.limit = max(KEPT, needed)
+        """Keep to the limit for a picture that needs so many bytes from an empty pool (`memory.peak_bytes`)."""
+        if needed:  # a plan may draw nothing, and the next one what the last one did
+            self.limit = max(KEPT, needed)
+            self._make_room(0)
 
     def take(self, spec: TextureSpec) -> Any:
         """A texture of this spec with unspecified contents."""

@@ -4,21 +4,51 @@ from typing import Any
 
 import pytest
 
-from fakesss.calls import EFFECTS
+from fakesss.calls import EFFECTS, Setting
+from fakesss.camera import View
+from fakesss.passes.shadow import layout_of
 from fakesss.renderer import Renderer
 from fakesss.scene import Scene
 
+DARK: dict[str, Any] = {"diffuse": (0, 0, 0), "specular": (0, 0, 0)}
 WEIGHTLESS: list[tuple[str, dict[str, Any]]] = [
     ("backlight", {"material.backlight": 0.0}),
     ("backlight", {"material.backlight": 0.0, "blur.enabled": False}),
     ("backlight", {"material.backlight": 0.0, "material.thickness": "bridged"}),
     ("backlight", {"material.backlight": 0.0, "material.thickness": "total-path"}),
     ("backlight", {"material.backlight": 0.0, "layers.method": "peel"}),
+    ("backlight", {"exposure": 0.0, "material.backlight": -0.5, "supersampling": 1}),
+    ("backlight", {"material.diffuse": (0, 0, 0), "material.diffuse_weight": 0.0}),
+    ("backlight", {"material.thickness_exponent": 0.0}),
+    ("backlight", {"material.thickness_exponent": 0.0, "material.backlight": -0.5, "blur.enabled": False}),
+    ("backlight", {"material.thickness_exponent": 0.0, "material.thickness": "bridged"}),
+    ("backlight", {"material.thickness_exponent": 0.0, "object": "box", "open_surface": "thick"}),
+    ("occlusion", {"exposure": 0.0}),
+    ("occlusion", {"material.diffuse": (0, 0, 0)}),
+    ("occlusion", {"material.diffuse": (1, 0, 0), "light.ambient": (0, 0, 1)}),
+    ("occlusion", {"light.ambient": (0, 0, 0), "occlusion.method": "screen-space"}),
     ("occlusion", {"material.ambient": 0.0}),
     ("occlusion", {"light.ambient": (0, 0, 0)}),
     ("specular", {"material.specular": 0.0}),
     ("specular", {"material.specular_contribution": 0.0}),
     ("specular", {"light.specular": (0, 0, 0)}),
+    ("specular", {"exposure": 0.0}),
+    ("diffuse", {"material.diffuse_contribution": 0.0}),
+    ("diffuse", {"material.diffuse": (0, 0, 0)}),
+    ("diffuse", {"material.diffuse": (1, 0, 0), "light.diffuse": (0, 1, 1)}),
+    ("diffuse", {"light.diffuse": (0, 0, 0), "light.kind": "spot"}),
+    ("shadows", {"exposure": 0.0, "light.shadows": True}),
+    ("shadows", {"material.diffuse": (0, 0, 0), "material.specular": 0.0, "light.shadows": True}),
+    ("shadows", {"lights": [{"shadows": True, **DARK}]}),
+    ("shadows", {"lights": [{"shadows": True, **DARK, "kind": "point", "distance": 0.3}]}),
+]
+PERMUTATIONS = {"diffuse", "specular"}  # of the shading, no passes of their own
+FURTHER: list[list[dict[str, Any]]] = [
+    [{"kind": "point", **DARK}],
+    [{"kind": "spot", "falloff": "linear", **DARK}],
+    [{"kind": "point", "shadows": True, **DARK}, {"azimuth": 70.0, "shadows": True}],
+    [{"kind": "spot", "shadows": True, **DARK}, {"kind": "point", "azimuth": 70.0, "shadows": True}],
+    [{"kind": "point", "diffuse": (0, 0, 1), "specular": (0, 0, 0)}],  # on red that is dark too
 ]
 
 
@@ -30,8 +60,35 @@ def test_culling_changes_no_byte(renderer: Renderer, effect: str, changes: dict[
     culled = renderer.render(scene)
     forced = renderer.render(scene, forced=frozenset(EFFECTS))
     assert culled.image.tobytes() == forced.image.tobytes()
-    if effect != "specular":  # a permutation, not a pass
+    if effect not in PERMUTATIONS:
         assert len(forced.passes) + len(forced.baked) > len(culled.passes) + len(culled.baked)
+
+
+@pytest.mark.gl
+@pytest.mark.parametrize("effect", ["diffuse", "specular", "shadows"])
+@pytest.mark.parametrize("lights", FURTHER, ids=str)
+def test_dark_further_lights_change_no_byte(renderer: Renderer, lights: list[dict[str, Any]], effect: str) -> None:
+    """The bright ones are computed the same way beside them; at these angles rounding would tell."""
+    scene = Scene(object="knot:3000", size=(64, 64)).replace(
+        {
+            "material.diffuse": (0.8, 0.3, 0.0),
+            "light.azimuth": 10.0,
+            "light.elevation": 33.0,
+            "lights": [{"ambient": (0.1, 0.1, 0.1), **light} for light in lights],
+        }
+    )
+    culled, forced = renderer.render(scene), renderer.render(scene, forced=frozenset({effect}))
+    assert culled.image.tobytes() == forced.image.tobytes()
+
+
+def test_dark_lights_that_are_forced_in_leave_the_maps_of_the_others_their_size() -> None:
+    scene = Scene(size=(1024, 1024)).replace({"light.shadows": True})
+    dark = scene.replace({"lights": [{"kind": "point", "distance": 0.1, "shadows": True, **DARK}]})
+    alone, forced = (
+        layout_of(Setting(one, View.of(one.camera, one.size), one.size, 1, True, frozenset({"shadows"})))
+        for one in (scene, dark)
+    )
+    assert (alone.maps, forced.maps) == (1, 7) and alone.side == forced.side
 
 
 def test_what_is_switched_off_cannot_be_forced() -> None:

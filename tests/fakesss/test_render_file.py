@@ -1,10 +1,15 @@
 """What is said of a picture, and the files that `render_file` writes."""
 
+import json
 from pathlib import Path
+from typing import Any
 
+import numpy as np
 import pytest
+from click.testing import CliRunner
 from picture_scenes import sheet_file
 
+from fakesss import cli_picture
 from fakesss.image_io import encode_png, read_picture
 from fakesss.problem import BadInput
 from fakesss.renderer import Renderer, render_file
@@ -46,6 +51,33 @@ def test_render_file_writes_and_tells(renderer: Renderer, tmp_path: Path, name: 
     if name.endswith(".png"):
         assert (tmp_path / name).read_bytes() == encode_png(renderer.render(scene).image)
         assert read_picture(tmp_path / name)[1] == ()
+
+
+@pytest.fixture
+def faulty(renderer: Renderer, monkeypatch: pytest.MonkeyPatch) -> None:
+    """A renderer whose pictures are not finite in two pixels, as no scene that we know of makes them."""
+    render = Renderer.render
+
+    def spoilt(self: Renderer, *args: Any, **kwargs: Any) -> Any:
+        drawn = render(self, *args, **kwargs)
+        drawn.image[3, 4, :2] = np.nan, np.inf
+        drawn.image[5, 6, 2] = -np.inf
+        return drawn
+
+    monkeypatch.setattr(Renderer, "render", spoilt)
+
+
+@pytest.mark.usefixtures("faulty")
+@pytest.mark.parametrize("name", ["picture.png", "picture.exr"])
+def test_pixels_that_are_not_finite_are_said_and_are_a_failure(tmp_path: Path, name: str) -> None:
+    run = CliRunner().invoke(
+        cli_picture.render, ["torus:4000", "--size", "31x21", "-o", str(tmp_path / name), "--json"]
+    )
+    assert run.exit_code == 1
+    assert run.stderr.splitlines()[0].startswith("2 pixels hold a value that is not finite")
+    assert json.loads(run.stdout)["non_finite"] == 2
+    pixels = read_picture(tmp_path / name)[0] if name.endswith(".png") else None
+    assert pixels is None or (pixels[3, 4, 0] == 0 and pixels[3, 4, 1] == 255 and pixels[5, 6, 2] == 0)
 
 
 def test_render_file_writes_the_contact_sheet(renderer: Renderer, tmp_path: Path) -> None:

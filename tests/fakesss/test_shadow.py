@@ -241,6 +241,45 @@ def test_a_picture_with_shadows_is_the_same_bytes_every_time(renderer: Renderer)
     assert renderer.render(scene).image.tobytes() == first
 
 
+def dish(folder: Path) -> str:
+    """A floor 1/8 radius behind the middle, with rising walls, and small triangles that hold the bounding sphere so."""
+    turns = 2 * np.pi * np.arange(16) / 16
+    around = np.stack([np.cos(turns), np.sin(turns), np.zeros(16)], axis=1)
+    middle = np.array([[0, 0, -0.125]])
+    outside = [
+        [1, 0, 0],
+        [0.9, 0.01, 0.125],
+        [0.9, -0.01, 0.125],
+        [-1, 0, 0],
+        [-0.9, 0.01, 0.125],
+        [-0.9, -0.01, 0.125],
+    ]
+    points = np.concatenate([middle, 0.5 * around + middle, 0.8 * around, outside])
+    faces = [(33, 34, 35), (36, 37, 38)]
+    for i in range(16):
+        j = (i + 1) % 16
+        faces += [(0, 1 + i, 1 + j), (1 + i, 17 + i, 17 + j), (1 + i, 17 + j, 1 + j)]
+    path = folder / "dish.ply"
+    trimesh.Trimesh(points, faces, process=False).export(path)
+    return str(path)
+
+
+@pytest.mark.gl
+@pytest.mark.parametrize("filtering", ["hard", "pcf", "disc"])
+def test_a_spot_in_the_plane_of_a_surface_leaves_it_finite(renderer: Renderer, tmp_path: Path, filtering: str) -> None:
+    """There a point lies beside the light, exactly as deep in its map: seen in a width of 0, and outside the cone."""
+    scene = Scene(object=dish(tmp_path), size=(65, 65), supersampling=1).replace({"camera.elevation": 0.0})
+    light = {"kind": "spot", "distance": 0.125, "azimuth": 180.0, "elevation": 0.0, "cutoff": 59.0, "shadows": True}
+    scene = scene.replace({f"light.{name}": value for name, value in light.items()})
+    scene = scene.replace({"shadow.filter": filtering})
+    floor = renderer.data(scene, ("front",))["front"] == 2.125
+    assert floor.sum() > 300
+    drawn = renderer.render(scene)
+    assert drawn.non_finite == 0
+    dark = renderer.render(scene.replace({"light.diffuse": (0, 0, 0), "light.specular": (0, 0, 0)}))
+    np.testing.assert_array_equal(drawn.image[floor], dark.image[floor])
+
+
 @pytest.mark.gl
 def test_a_sweep_draws_its_shadow_maps_once(renderer: Renderer) -> None:
     """They are drawn again when light, camera, object or map change, and the pictures are as if drawn afresh."""

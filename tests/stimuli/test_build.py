@@ -16,6 +16,7 @@ from PIL import Image
 
 from benchmarks.sweep import AtOnce
 from fakesss.problem import BadInput
+from fakesss.renderer import Renderer
 from stimuli import build as building
 from stimuli.build import build, verify
 from stimuli.store import Store
@@ -43,6 +44,21 @@ def folder(tmp_path: Path) -> Path:
     (tmp_path / "study").mkdir()
     (tmp_path / "study" / "study.toml").write_text(STUDY, encoding="utf-8")
     return tmp_path / "study"
+
+
+@pytest.mark.gl
+def test_a_picture_that_is_not_finite_is_refused(folder: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    render = Renderer.render
+
+    def spoilt(self: Renderer, *args: Any, **kwargs: Any) -> Any:
+        drawn = render(self, *args, **kwargs)
+        drawn.image[3, 4:9] = np.nan
+        return drawn
+
+    monkeypatch.setattr(Renderer, "render", spoilt)
+    with pytest.raises(BadInput, match=r"study\.toml: img0\d: 5 pixels hold a value that is not finite.*; change"):
+        build(folder, quiet=True)
+    assert not (folder / "stimuli" / "manifest.json").exists()
 
 
 def content(folder: Path) -> dict[str, bytes]:
