@@ -38,6 +38,17 @@ def test_what_is_read_and_written_is_said() -> None:
     assert lines[front + 2].strip() == "mesh, occlusion -> front, surface, coverage"
     assert "drawn, " in lines[front] and "MB" in lines[front] and " ms" not in "".join(lines)
     assert "320 rays a vertex" in next(line for line in lines if line.startswith("  occlusion"))
+    local = {"material.thickness": "local", "layers.rays": 48}
+    assert "48 rays a vertex" in next(line for line in text(local).splitlines() if line.startswith("  local_thickness"))
+
+
+@pytest.mark.parametrize(
+    ("name", "kind"),
+    [("occlusion", "baked"), ("front", "drawn"), ("second", "chosen"), ("blur", "computed in place")],
+)
+def test_how_a_node_is_made_is_said(name: str, kind: str) -> None:
+    line = next(line for line in text({}).splitlines() if line.startswith(f"  {name} "))
+    assert line.split(maxsplit=1)[1].split(", ")[0] == kind
 
 
 @pytest.mark.gl

@@ -13,12 +13,12 @@ BAKED = {"name", "kept", "because", "rays", "seconds", "cached"}
 
 
 def test_explain_has_the_contracts_shape() -> None:
-    document = explain(Scene())
+    document = explain(Scene().replace({"occlusion.rays": 16, "layers.rays": 48}))
     assert document.keys() == {"passes", "baked"}
     assert all(entry.keys() == PASS for entry in document["passes"])
     assert all(entry.keys() == BAKED for entry in document["baked"])
     rays = {entry["name"]: entry["rays"] for entry in document["baked"]}
-    assert rays == {"mesh": None, "occlusion": 320, "local_thickness": 320, "coarse_mesh": None}
+    assert rays == {"mesh": None, "occlusion": 16, "local_thickness": 48, "coarse_mesh": None}
     assert {entry["gpu_ms"] for entry in document["passes"]} == {None}
 
 

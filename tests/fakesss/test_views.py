@@ -17,7 +17,7 @@ NAMES = [name for row in ROWS for name in row]
 
 @pytest.mark.gl
 def test_every_view_is_made_and_holds_data(renderer: Renderer) -> None:
-    scene = Scene(object="torus:4000", size=(60, 40))
+    scene = Scene(object="torus:4000", size=(60, 40)).replace({"blur.step": 0.02})
     made = views(scene)
     assert list(made) == NAMES
     data = renderer.data(scene, ("front", "second", "thickness", "blurred_thickness"))
@@ -27,6 +27,7 @@ def test_every_view_is_made_and_holds_data(renderer: Renderer) -> None:
     for name in ("front", "second"):
         assert (panels[name].values == data[name] - 1).all()
     assert (panels["softening"].values == data["blurred_thickness"] - data["thickness"]).all()
+    assert panels["softening"].values.any()
     assert all(panel.values.shape[:2] == (40, 60) for panel in panels.values())
     plots = [view.draw((300, 200)) for view in made.values() if isinstance(view, Plot)]
     assert [drawing.shape for drawing in plots] == [(200, 300, 3)] * 2
@@ -53,3 +54,13 @@ def test_the_profile_follows_its_curves() -> None:
     assert empty.shape == drawn.shape == (300, 400, 3)
     filled = drawn.astype(int).sum(axis=2)
     assert filled[150, 190] > filled[150, 90] and filled[150, 190] > filled[30, 190]
+
+
+@pytest.mark.parametrize("edge", [-0.35, 0.0, 0.2])
+def test_the_red_line_stands_at_its_edge(edge: float) -> None:
+    """The plot is 334 pixels wide from 52 on, and shows what is covered with 3% more on either side."""
+    across = np.linspace(-0.5, 0.5, 101)
+    flat = np.full(101, 0.1)
+    drawn = profile_plot(Profile(across, flat, flat, [edge]), (400, 300)).astype(int)
+    red = drawn[..., 0] - drawn[..., 1:].max(axis=2)
+    assert abs(red[100:200].sum(axis=0).argmax() - (52 + 334 * (edge + 0.53) / 1.06)) <= 1
