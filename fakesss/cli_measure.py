@@ -2,12 +2,11 @@
 
 import json
 from pathlib import Path
-from typing import Any
 
 import click
 
 from fakesss.cli import AS_JSON, commands, done
-from fakesss.problem import BadInput
+from fakesss.output import check_writable, make_folder, write_atomically
 
 
 @commands.command()
@@ -27,24 +26,19 @@ def bench(name: str, faces: tuple[int, ...], side: int, out: str | None, as_json
     from fakesss.bench import bench as measured
     from fakesss.bench_tables import tables
 
-    folder = folder_for(out) if out else None
+    files = places(Path(out)) if out else None
     result = measured(name, faces or FACES, (side, side))
     text = tables(result)
-    if folder:
-        write(folder, result, text)
+    if files:
+        write_atomically(files[0], (json.dumps(result, indent=1) + "\n").encode())
+        write_atomically(files[1], (text + "\n").encode())
     done(result, as_json, text)
 
 
-def folder_for(path: str) -> Path:
-    """The folder, made if it is not there; asked for before the work, not after it."""
-    try:
-        Path(path).mkdir(parents=True, exist_ok=True)
-    except OSError as error:
-        raise BadInput(f"{path}: cannot be made ({error.strerror}); name a folder that can be written") from None
-    return Path(path)
-
-
-def write(folder: Path, result: dict[str, Any], text: str) -> None:
-    """The figures for machines and for people."""
-    (folder / "bench.json").write_text(json.dumps(result, indent=1) + "\n", encoding="utf-8")
-    (folder / "bench.md").write_text(text + "\n", encoding="utf-8")
+def places(folder: Path) -> tuple[Path, Path]:
+    """Where bench.json and bench.md go, the folder made if it is not there; asked for before the work, not after it."""
+    make_folder(folder)
+    figures, tables = folder / "bench.json", folder / "bench.md"
+    check_writable(figures)
+    check_writable(tables)
+    return figures, tables

@@ -11,7 +11,7 @@ from matplotlib.path import Path as Curve
 
 from fakesss.frame_graph import Node, Plan
 from fakesss.graph_layout import WIDTH, Joint, Layout, Line, layout
-from fakesss.problem import BadInput
+from fakesss.output import check_output, replacing
 
 SUFFIXES = (".svg", ".pdf", ".png")
 HEIGHT, ROW, MARGIN = 34.0, 84.0, 28.0  # of a box, from layer to layer, around the drawing
@@ -33,21 +33,15 @@ def draw_graph(graph: Plan, path: str | Path, gpu_ms: Mapping[str, float | None]
     """Write a compiled graph to a .svg, .pdf or .png file; `gpu_ms` adds each pass's time. Raises `BadInput`."""
     path = check_drawing(path)
     undated = {"Date": None} if path.suffix.lower() == ".svg" else {}
-    with matplotlib.rc_context({"svg.fonttype": "none", "svg.hashsalt": "fakesss"}):  # text stays text; equal bytes
-        try:
-            drawn(graph, gpu_ms or {}).savefig(path, dpi=DPI, metadata=undated, facecolor=PAPER)
-        except OSError as error:
-            raise BadInput(f"{path}: cannot be written ({error.strerror}); choose a folder you may write to") from None
+    kind = path.suffix[1:].lower()
+    options = {"svg.fonttype": "none", "svg.hashsalt": "fakesss"}  # text stays text; equal bytes
+    with matplotlib.rc_context(options), replacing(path) as waiting:
+        drawn(graph, gpu_ms or {}).savefig(waiting, dpi=DPI, metadata=undated, facecolor=PAPER, format=kind)
 
 
 def check_drawing(path: str | Path) -> Path:
     """`path` if a drawing can be written there, else `BadInput`."""
-    path = Path(path)
-    if path.suffix.lower() not in SUFFIXES:
-        raise BadInput(f'{path}: "{path.suffix}" is no format of drawings; name it .svg, .pdf or .png')
-    if not path.parent.is_dir():
-        raise BadInput(f"{path}: the folder {path.parent} does not exist; make it first")
-    return path
+    return check_output(path, SUFFIXES, "drawings")
 
 
 def drawn(graph: Plan, gpu_ms: Mapping[str, float | None]) -> Figure:

@@ -9,45 +9,33 @@ from numpy.typing import NDArray
 
 from fakesss import png
 from fakesss.colour import to_8bit
+from fakesss.output import check_output, replacing
 from fakesss.picture_reading import read_picture
-from fakesss.problem import BadInput
 
-__all__ = ["check_output", "encode_png", "encode_png8", "read_picture", "write_image"]
+__all__ = ["check_picture", "encode_png", "encode_png8", "read_picture", "write_image"]
 
 SUFFIXES = (".png", ".exr")
 BLOCK = 1 << 14  # pixels encoded at once: what the encoder makes of them stays in the processor's cache
 
 
-def check_output(path: str | Path) -> Path:
+def check_picture(path: str | Path) -> Path:
     """`path` if a picture can be written there, else `BadInput`; called before the work, not after it."""
-    path = Path(path)
-    if path.suffix.lower() not in SUFFIXES:
-        raise BadInput(f'{path}: "{path.suffix}" is no picture format written here; name it .png or .exr')
-    if not path.parent.is_dir():
-        raise BadInput(f"{path}: the folder {path.parent} does not exist; make it first")
-    return path
+    return check_output(path, SUFFIXES, "pictures")
 
 
 def write_image(path: str | Path, linear: NDArray[Any], alpha: bool = False) -> Path:
     """Write linear RGB (H, W, 3), or RGB and coverage (H, W, 4).
 
     RGB is the whole picture, so a PNG leaves coverage out; with `alpha` it is the picture times its coverage, and the
-    file keeps that as its alpha.
+    file keeps that as its alpha. The file is there whole, or what stood there before still is (`BadInput`).
     """
-    path = check_output(path)
-    try:
+    path = check_picture(path)
+    with replacing(path) as waiting:
         if path.suffix.lower() == ".png":
-            path.write_bytes(encode_png(linear, alpha))
+            waiting.write_bytes(encode_png(linear, alpha))
         else:
-            write_exr(path, linear, alpha)
-    except (OSError, RuntimeError) as error:
-        raise BadInput(f"{path}: cannot be written ({reason(error)}); choose a folder you may write to") from None
+            write_exr(waiting, linear, alpha)
     return path
-
-
-def reason(error: Exception) -> str:
-    """The operating system's own words where there are any."""
-    return (error.strerror if isinstance(error, OSError) else None) or str(error).splitlines()[0]
 
 
 def encode_png(linear: NDArray[Any], alpha: bool = False) -> bytes:
@@ -100,4 +88,7 @@ def write_exr(path: Path, linear: NDArray[Any], alpha: bool) -> None:
         channels["coverage"] = np.ascontiguousarray(picture[..., 3])
     header = {"compression": OpenEXR.ZIP_COMPRESSION, "type": OpenEXR.scanlineimage}
     with OpenEXR.File(header, channels) as file:
-        file.write(str(path))
+        try:
+            file.write(str(path))
+        except RuntimeError as error:  # a full disk, for one
+            raise OSError(str(error)) from None

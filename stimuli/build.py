@@ -38,6 +38,7 @@ def build(folder: Path, *, jobs: int = 1, force: bool = False, quiet: bool | Non
     keys = {stimulus.id: build_key(stimulus, study.scene.size, folder, made_by) for stimulus in stimuli}
     store = Store(folder)
     with one_build_at_a_time(store.waiting):
+        store.remove_unfinished()
         if not force:
             store.take_over(up_to_date(folder), set(keys.values()))
         tasks = {keys[s.id]: s for s in reversed(stimuli) if force or not store.has(keys[s.id])}

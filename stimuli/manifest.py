@@ -2,10 +2,10 @@
 
 import hashlib
 import json
-import tempfile
 from pathlib import Path
 from typing import Any
 
+from fakesss.output import write_atomically
 from fakesss.problem import BadInput
 from stimuli.design import Stimulus
 from stimuli.study import Study, study_sha256
@@ -48,7 +48,7 @@ def stimulus_entry(stimulus: Stimulus, drawn: dict[str, Any]) -> dict[str, Any]:
 
 
 def write_manifest(folder: Path, manifest: dict[str, Any]) -> None:
-    """The manifest on disk, whole or not at all."""
+    """The manifest on disk, whole or not at all, in a folder that is there."""
     write_atomically(manifest_path(folder), (json.dumps(manifest, indent=1, ensure_ascii=False) + "\n").encode())
 
 
@@ -67,26 +67,6 @@ def read_manifest(folder: Path) -> dict[str, Any]:
     if manifest.get("format") != FORMAT:
         raise BadInput(f"{path}: format {manifest.get('format')!r}, this version reads {FORMAT}; build the study again")
     return manifest
-
-
-def write_atomically(path: Path, content: bytes) -> None:
-    """`content` at `path` in one step, so that an interrupted build leaves no half-written file."""
-    try:
-        path.parent.mkdir(parents=True, exist_ok=True)
-        with tempfile.NamedTemporaryFile(dir=path.parent, prefix=f".{path.name}.", delete=False) as file:
-            waiting = Path(file.name)
-            try:
-                file.write(content)
-                file.flush()
-                waiting.chmod(0o644)
-                waiting.replace(path)
-            except BaseException:
-                waiting.unlink(missing_ok=True)
-                raise
-    except OSError as error:
-        raise BadInput(
-            f"{path}: cannot be written ({error.strerror or error}); check the folder's permissions and space"
-        ) from None
 
 
 def sha256(content: bytes) -> str:

@@ -2,17 +2,20 @@
 
 import contextlib
 import json
+import re
 from collections.abc import Iterable, Iterator
 from pathlib import Path
 from typing import Any
 
 import portalocker
 
+from fakesss.output import MEND, make_folder, reason, write_atomically
 from fakesss.problem import BadInput
-from stimuli.manifest import manifest_path, read_manifest, sha256, write_atomically
+from stimuli.manifest import manifest_path, read_manifest, sha256
 from stimuli.picture import Drawn
 
 LOCK = "lock"
+UNFINISHED = re.compile(r"\.(img\d+r?\.png|manifest\.json|[0-9a-f]{64}\.(png|json))\.\w{8}")  # see output.replacing
 
 
 def earlier_entries(folder: Path) -> list[dict[str, Any]]:
@@ -34,12 +37,11 @@ def up_to_date(folder: Path) -> Iterator[tuple[str, Path, dict[str, Any]]]:
 @contextlib.contextmanager
 def one_build_at_a_time(folder: Path) -> Iterator[None]:
     """Holds `folder` for this process (two builds would take each other's pictures away); removes it when empty."""
+    make_folder(folder)
     try:
-        folder.mkdir(parents=True, exist_ok=True)
         lock = (folder / LOCK).open("wb")
     except OSError as error:
-        reason = error.strerror or error
-        raise BadInput(f"{folder}: cannot be written ({reason}); check the folder's permissions and space") from None
+        raise BadInput(f"{folder}: cannot be written ({reason(error)}); {MEND}") from None
     with lock:
         try:
             portalocker.lock(lock, portalocker.LockFlags.EXCLUSIVE | portalocker.LockFlags.NON_BLOCKING)
@@ -59,6 +61,13 @@ class Store:
     def __init__(self, folder: Path) -> None:
         self.final = manifest_path(folder).parent
         self.waiting = self.final / ".build"
+
+    def remove_unfinished(self) -> None:
+        """Delete what a build that was killed had begun to write; only for who holds the lock."""
+        for folder in (self.waiting, self.final):
+            for path in folder.iterdir():
+                if UNFINISHED.fullmatch(path.name):
+                    path.unlink(missing_ok=True)
 
     def has(self, key: str) -> bool:
         """Whether the picture is there and is the one its description tells of."""

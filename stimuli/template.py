@@ -3,8 +3,8 @@
 from importlib.resources import files
 from pathlib import Path
 
+from fakesss.output import make_folder, write_atomically
 from fakesss.problem import BadInput, nearest
-from stimuli.manifest import write_atomically
 
 
 def template_names() -> list[str]:
@@ -19,5 +19,6 @@ def write_template(folder: Path, name: str = "thesis") -> Path:
     path = folder / "study.toml"
     if path.exists():
         raise BadInput(f"{path}: exists already; choose another folder or edit it")
+    make_folder(folder)
     write_atomically(path, (files("stimuli") / "templates" / f"{name}.toml").read_bytes())
     return path

@@ -96,11 +96,11 @@ def test_an_empty_mesh(tmp_path: Path) -> None:
 
 def test_an_unwritable_folder(tmp_path: Path) -> None:
     (tmp_path / "file").write_text("not a folder")
-    expect_sentence(fakesss("new", tmp_path / "file" / "study"), "cannot be written")
+    expect_sentence(fakesss("new", tmp_path / "file" / "study"), "cannot be made")
     (tmp_path / "study").mkdir()
     (tmp_path / "study" / "study.toml").write_text(STUDY, encoding="utf-8")
     (tmp_path / "study" / "stimuli").write_text("not a folder")
-    expect_sentence(fakesss("build", tmp_path / "study"), "stimuli", "cannot be written")
+    expect_sentence(fakesss("build", tmp_path / "study"), "stimuli", "cannot be made")
     expect_sentence(
         fakesss("render", "sphere:4000", "--size", "8x8", "-o", tmp_path / "file" / "x.png"), "does not exist; make it"
     )
@@ -164,3 +164,11 @@ def test_doctor_finds_what_this_machine_has() -> None:
     assert result.returncode == 0
     assert document["ok"]
     assert {f["name"] for f in document["findings"]} >= {"Python", "OpenGL", "Embree", "database"}
+
+
+@pytest.mark.parametrize("taken", ["bench.json", "bench.md"])
+def test_bench_asks_for_its_folder_before_it_measures(tmp_path: Path, taken: str) -> None:
+    (tmp_path / taken).mkdir()
+    expect_sentence(fakesss("bench", "--faces", "1000", "-o", tmp_path), f"{taken}: cannot be written", "name a file")
+    (tmp_path / "file").write_text("not a folder")
+    expect_sentence(fakesss("bench", "-o", tmp_path / "file" / "bench"), "file/bench: cannot be made")

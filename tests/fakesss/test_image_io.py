@@ -68,7 +68,11 @@ def test_exr_keeps_linear_floats_beyond_white(tmp_path: Path, channels: int) -> 
 
 @pytest.mark.parametrize(
     ("name", "sentence"),
-    [("a.jpg", '".jpg" is no picture format'), ("a", "name it .png or .exr"), ("no/such/a.png", "does not exist")],
+    [
+        ("a.jpg", '".jpg" is no format of pictures; name it .png or .exr'),
+        ("a", "name it .png or .exr"),
+        ("no/such/a.png", "does not exist"),
+    ],
 )
 def test_a_place_that_cannot_be_written_is_one_sentence(tmp_path: Path, name: str, sentence: str) -> None:
     with pytest.raises(BadInput, match=sentence):

@@ -5,6 +5,7 @@ import io
 import json
 import os
 import shutil
+import signal
 import time
 from pathlib import Path
 from typing import Any
@@ -15,6 +16,7 @@ import trimesh
 from PIL import Image
 
 from benchmarks.sweep import AtOnce
+from fakesss.output import replacing
 from fakesss.problem import BadInput
 from fakesss.renderer import Renderer
 from stimuli import build as building
@@ -284,6 +286,38 @@ def test_two_builds_at_once_are_refused_in_one_sentence(folder: Path) -> None:
     ):
         build(folder)
     build(folder)
+
+
+def killed_while_writing(path: Path) -> None:
+    """Begins to write `path` and dies as by `kill -9`: nothing is tidied up."""
+    child = os.fork()
+    if child == 0:
+        with replacing(path) as waiting:
+            waiting.write_bytes(b"half")
+            os.kill(os.getpid(), signal.SIGKILL)
+    os.waitpid(child, 0)
+
+
+def test_what_a_killed_build_left_half_written_is_removed(folder: Path) -> None:
+    stimuli = folder / "stimuli"
+    (stimuli / ".build").mkdir(parents=True)
+    begun = [stimuli / ".build" / f"{'0a' * 32}.{kind}" for kind in ("png", "json")]
+    for path in (*begun, stimuli / "img01.png", stimuli / "img01r.png", stimuli / "manifest.json"):
+        killed_while_writing(path)
+    assert len(list(stimuli.glob(".*.*.*"))) == 3 and len(list((stimuli / ".build").iterdir())) == 2
+    (stimuli / ".notes.png.of_mine").write_text("kept")
+    build(folder)
+    names = [".notes.png.of_mine", "img01.png", "img02.png", "img03.png", "img04.png", "manifest.json"]
+    assert sorted(content(folder)) == names
+
+
+def test_a_running_build_keeps_what_it_is_writing(folder: Path) -> None:
+    waiting = folder / "stimuli" / ".build"
+    with building.one_build_at_a_time(waiting):
+        killed_while_writing(waiting / f"{'0a' * 32}.png")
+        with pytest.raises(BadInput, match="another build"):
+            build(folder)
+        assert len(list(waiting.glob(".*"))) == 1
 
 
 def test_levels_without_effect_are_told(folder: Path) -> None:
