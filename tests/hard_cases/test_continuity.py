@@ -10,17 +10,20 @@ from catalogue import DRAWN
 from edges import LAYERS, off_edges
 from hard_case import Case
 from hard_meshes import ball, obj, ring
-from small_changes import CHANGE, changed, numbers, with_given_camera
+from small_changes import CHANGE, Place, changed, numbers, with_given_camera
 from terms import largest
 
+from fakesss.camera import View
 from fakesss.renderer import Renderer
 from fakesss.scene import Scene
+from fakesss.shadow_maps import map_views
 
 pytestmark = pytest.mark.gl
 
 # Of the sum of the picture's terms, for a change of 1e-4.
 PIXEL = 0.01  # at any pixel off the edges; the worst found is 0.0066
 MEAN = 5e-4  # of the whole picture, edges included; the worst found is 0.0003
+JUMP, FEW = 0.1, 0.005  # where a light goes over to six maps: at any pixel, and share of those beyond PIXEL
 MOST_PIXELS = 128 * 128
 
 
@@ -61,6 +64,28 @@ def test_every_number_of_the_scene(renderer: Renderer, folder: Path, case: Case)
     assert found[worst][0] <= PIXEL, worst
     widest = max(found, key=lambda place: found[place][1])
     assert found[widest][1] <= MEAN, widest
+
+
+WIDEST: dict[str, tuple[Place, dict[str, Any]]] = {
+    "point": (("light", "distance"), {"light.kind": "point", "light.distance": 1.15465}),
+    "spot": (("light", "cutoff"), {"light.kind": "spot", "light.distance": 0.8, "light.cutoff": 60.0}),
+}
+
+
+@pytest.mark.parametrize(("place", "changes"), WIDEST.values(), ids=WIDEST)
+@pytest.mark.parametrize("shape", ["knot:4000", "figure:8000"])
+def test_a_light_that_goes_over_to_six_maps(
+    renderer: Renderer, folder: Path, shape: str, place: Place, changes: dict[str, Any]
+) -> None:
+    """The one jump there is: the shadows' texels are others, so single pixels on their edges change by more."""
+    scene = moderate(Case("widest", "", "", changes={"light.shadows": True, **changes, "object": shape}).scene(folder))
+    other = changed(scene, place)
+    maps = [len(map_views(one.light, View.of(one.camera, one.size))) for one in (scene, other)]
+    assert sorted(maps) == [1, 6]
+    before, after = look(renderer, scene), look(renderer, other)
+    assert differences(before, after, largest(scene))[1] <= MEAN / 5
+    jumps = np.abs(before["image"][..., :3] - after["image"][..., :3]).max(axis=-1) / largest(scene)
+    assert 0 < jumps.max() <= JUMP and (jumps > PIXEL).sum() <= FEW * (before["front"] > 0).sum()
 
 
 @pytest.mark.parametrize("surface", [ball(), ring()], ids=["ball", "ring"])
