@@ -20,6 +20,7 @@ Faces = NDArray[np.int32]
 
 CREASE_DEGREES = 60.0  # between face normals; a box (90) keeps its edges, a coarse scan of a smooth body gets none
 MANY_SIDED = 6  # edges with more triangles than this are hard
+ROUNDED = 1e-5  # of a unit normal times radians: what float32 positions leave of a sum that is 0
 SLIVER = 5e-7  # sphere radii; the normal of a triangle less high than some eight roundings to float32 is noise
 
 
@@ -61,19 +62,18 @@ def with_creases(positions: Floats32, faces: Faces) -> tuple[Floats32, Floats32,
 
     A crease is an edge where the face normals differ by more than `CREASE_DEGREES`; where more than two triangles meet,
     as on a sheet that was modelled from both sides, each goes on smoothly into those that face like it. Slivers do not
-    count, and make no crease. Where the weighted normals cancel, the vertex takes the normal of one of its triangles,
-    and where all are slivers, the direction away from the centre.
+    count, and make no crease. Where the weighted normals cancel, surfaces that only touch are parted; where they cancel
+    within one surface the vertex takes the normal of one of its triangles, and where all are slivers, the direction
+    away from the centre.
     """
     flat = face_normals(positions, faces)
     flat[slivers(positions, faces)] = 0
-    origin, faces = split_at_creases(positions, faces, flat)
-    positions = positions[origin]
     weighted = corner_angles(positions, faces)[:, :, None] * flat[:, None, :]
-    total: Floats = np.stack(
-        [np.bincount(faces.ravel(), weighted[:, :, axis].ravel(), len(positions)) for axis in range(3)], axis=1
-    )
+    origin, faces = split_at_creases(positions, faces, flat, cancels(weighted_sum(weighted, faces, len(positions))))
+    positions = positions[origin]
+    total = weighted_sum(weighted, faces, len(positions))
     normals = normalised(total)
-    cancelled = (total**2).sum(axis=1) < 1e-20
+    cancelled = cancels(total)
     some_face = np.zeros((len(positions), 3))
     has_area = (flat**2).sum(axis=1) > 0
     some_face[faces[has_area]] = flat[has_area][:, None, :]
@@ -84,8 +84,25 @@ def with_creases(positions: Floats32, faces: Faces) -> tuple[Floats32, Floats32,
     return positions, normals.astype(np.float32), faces
 
 
-def split_at_creases(positions: Floats32, faces: Faces, flat: Floats) -> tuple[NDArray[np.int64], Faces]:
-    """For each new vertex the old one it copies, and the faces in new vertices; no crease: nothing changes."""
+def weighted_sum(weighted: Floats, faces: Faces, vertices: int) -> Floats:
+    """The sums (V, 3) at the vertices of vectors (F, 3, 3) at the triangles' corners."""
+    corner = faces.ravel()
+    return np.stack([np.bincount(corner, weighted[:, :, axis].ravel(), vertices) for axis in range(3)], axis=1)
+
+
+def cancels(total: Floats) -> NDArray[np.bool_]:
+    """Whether nothing but rounding is left of sums (V, 3) of unit normals times radians."""
+    nothing: NDArray[np.bool_] = (total**2).sum(axis=1) < ROUNDED**2
+    return nothing
+
+
+def split_at_creases(
+    positions: Floats32, faces: Faces, flat: Floats, cancelled: NDArray[np.bool_]
+) -> tuple[NDArray[np.int64], Faces]:
+    """For each new vertex the old one it copies, and the faces in new vertices; no crease: nothing changes.
+
+    So is a vertex whose normals are `cancelled` (V,), where surfaces only touch: the tips of two cones.
+    """
     vertices = len(positions)
     half_a, half_b = half_edge_pairs(faces, most=MANY_SIDED)
     compared = with_lent_normals(positions, faces, flat, (half_a, half_b))
@@ -97,7 +114,7 @@ def split_at_creases(positions: Floats32, faces: Faces, flat: Floats) -> tuple[N
     following = np.roll(faces, -1, axis=1).ravel()
     on_crease = np.zeros(vertices, bool)
     on_crease[corner_vertex[~joined]] = on_crease[following[~joined]] = True
-    touched = np.flatnonzero(on_crease[corner_vertex])
+    touched = np.flatnonzero((on_crease | cancelled)[corner_vertex])
     if not len(touched):
         return np.arange(vertices), faces
     fans = corner_fans(faces, half_a[smooth], half_b[smooth], touched)

@@ -177,6 +177,20 @@ def test_both_sides_of_a_sheet_are_kept_with_their_own_normals() -> None:
     assert set(np.round(sheet.normals[:, 2])) == {-1, 1}
 
 
+@pytest.mark.parametrize("away", [0.0, 1e6])
+def test_surfaces_that_touch_at_a_point_have_their_own_normals_there(away: float) -> None:
+    """Two cones, tip to tip; far from the origin their normals cancel up to rounding alone."""
+    lower = trimesh.creation.cone(1, 1, sections=24)
+    lower.apply_translation((0, 0, -1))
+    points = np.concatenate([lower.vertices, lower.vertices * (1, 1, -1)]) + away / 3
+    mesh = mesh_from_triangles(
+        points, np.concatenate([lower.faces, lower.faces[:, ::-1] + len(lower.vertices)]), "test"
+    )
+    tips = mesh.normals[np.abs(mesh.positions).max(axis=1) < 1e-6]
+    assert mesh.watertight
+    np.testing.assert_allclose(np.sort(tips[:, 2]), [-1, 1], atol=1e-4)
+
+
 def test_extreme_coordinates_stay_finite() -> None:
     for scale in (1e-300, 1e300):
         mesh = mesh_from_triangles(np.array(BOX.vertices) * scale, BOX.faces, "test")

@@ -68,7 +68,7 @@ DAMAGED = [
     Case(
         "cones-at-a-point",
         "At the tip that two cones share the weighted normals cancel.",
-        "Two cones with unit normals.",
+        "Two cones, each with a normal of its own at the tip.",
         lambda: obj(make.cones_at_a_point()),
         ".obj",
     ),
