@@ -1,8 +1,9 @@
 """Whether memory stays flat over thousands of pictures: `python benchmarks/memory.py --pictures 10000`.
 
-Small pictures through the build's own path (drawn, encoded, hashed, written), each with another material, camera,
-size and object than the one before. What is kept from picture to picture has bounds (meshes, buffers, programs,
-textures): after every kind of picture was seen a few times nothing may grow any more.
+Small pictures through the build's own path (drawn, encoded, hashed, written), in two sweeps: each picture with another
+material, camera, size and object than the one before; and, at one size, with other lights, shadow maps and numbers of
+samples, each a texture or a program of its own. What is kept from picture to picture has bounds (the last few meshes,
+buffers and programs, bytes of textures): once these are reached nothing may grow any more.
 """
 
 import random
@@ -10,7 +11,7 @@ import resource
 import shutil
 import tempfile
 import time
-from collections.abc import Iterator
+from collections.abc import Callable, Iterable, Iterator
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -76,14 +77,39 @@ def tasks(count: int, seed: int = 2011) -> Iterator[Task]:
         yield f"{number:06d}", Stimulus(f"img{number}", "", "factor", scene)
 
 
+def lit_tasks(count: int, seed: int = 2011) -> Iterator[Task]:
+    """`count` pictures of one object and size, which differ in their lights, shadow maps and numbers of samples."""
+    lot = random.Random(seed)
+    for number in range(count):
+        lights = [{"azimuth": lot.uniform(0, 360), "shadows": lot.random() < 0.7} for _ in range(lot.randint(0, 7))]
+        scene = Scene(size=LARGEST, object="torus:1000", supersampling=1).replace(
+            {
+                "occlusion.method": lot.choice(("baked", "screen-space")),
+                "occlusion.rays": 8,
+                "occlusion.samples": 4 * lot.randint(1, 16),
+                "light.kind": lot.choice(("directional", "point", "spot")),
+                "light.distance": lot.uniform(0, 4),
+                "light.shadows": lot.random() < 0.7,
+                "lights": lights,
+                "shadow.map_size": lot.randint(64, 512),
+                "shadow.filter": lot.choice(("hard", "pcf", "disc")),
+                "shadow.samples": lot.randint(1, 16),
+            }
+        )
+        yield f"{number:06d}", Stimulus(f"img{number}", "", "factor", scene)
+
+
+SWEEPS: dict[str, Callable[[int], Iterator[Task]]] = {"everything": tasks, "lights at one size": lit_tasks}
+
+
 def resident() -> float:
     """MiB of this process in memory now (Linux)."""
     pages = int(Path("/proc/self/statm").read_text(encoding="ascii").split()[1])
     return pages * resource.getpagesize() / MIB
 
 
-def measure(count: int, every: int) -> Course:
-    """Draws `count` pictures into a temporary folder and looks at memory after each `every` of them."""
+def measure(pictures: Iterable[Task], every: int) -> Course:
+    """Draws `pictures` into a temporary folder and looks at memory after each `every` of them."""
     folder = Path(tempfile.mkdtemp(prefix="fakesss-memory-"))
     course = Course([], [])
     drawn = 0
@@ -96,7 +122,7 @@ def measure(count: int, every: int) -> Course:
             course.mib.append(resident())
 
     try:
-        draw_here(tasks(count), LARGEST, folder, look)
+        draw_here(pictures, LARGEST, folder, look)
     finally:
         shutil.rmtree(folder)
     return course
@@ -105,15 +131,17 @@ def measure(count: int, every: int) -> Course:
 @click.command()
 @click.option("--pictures", default=10_000, show_default=True, type=click.IntRange(100))
 def main(pictures: int) -> None:
-    """Prints resident memory over the sweep, its growth after the first tenth, and the slope."""
-    start = time.perf_counter()
-    course = measure(pictures, max(1, pictures // 100))
-    for drawn, mib in list(zip(course.pictures, course.mib, strict=True))[:: max(1, len(course.mib) // 20)]:
-        click.echo(f"{drawn:7d} pictures  {mib:7.1f} MiB")
-    click.echo(
-        f"growth after the first {SETTLED:.0%}: {course.growth:+.1f} MiB, slope {course.slope:+.0f} bytes a picture"
-    )
-    click.echo(f"{(time.perf_counter() - start) / pictures * 1000:.1f} ms a picture")
+    """Prints resident memory over each sweep, its growth after the first tenth, and the slope."""
+    for name, sweep in SWEEPS.items():
+        start = time.perf_counter()
+        course = measure(sweep(pictures), max(1, pictures // 100))
+        click.echo(name)
+        for drawn, mib in list(zip(course.pictures, course.mib, strict=True))[:: max(1, len(course.mib) // 20)]:
+            click.echo(f"{drawn:7d} pictures  {mib:7.1f} MiB")
+        click.echo(
+            f"growth after the first {SETTLED:.0%}: {course.growth:+.1f} MiB, slope {course.slope:+.0f} bytes a picture"
+        )
+        click.echo(f"{(time.perf_counter() - start) / pictures * 1000:.1f} ms a picture")
 
 
 if __name__ == "__main__":

@@ -8,7 +8,8 @@ import moderngl
 import pytest
 from test_build import STUDY
 
-from benchmarks.memory import Course, measure
+from benchmarks.memory import Course, lit_tasks, measure, tasks
+from fakesss import texture_pool
 from fakesss.gpu import shared
 from stimuli import build as building
 from stimuli.build import build
@@ -88,8 +89,22 @@ GROWTH = 12  # MiB in the last 90 % of a sweep; single measurements are 4 apart,
     [400, pytest.param(10_000, marks=[pytest.mark.long, pytest.mark.timeout(3600)])],
 )
 def test_memory_stays_flat(pictures: int) -> None:
-    measure(100, 100)  # what is loaded once
-    course = measure(pictures, pictures // 100)
+    measure(tasks(100), 100)  # what is loaded once
+    course = measure(tasks(pictures), pictures // 100)
+    assert course.growth < GROWTH, list(zip(course.pictures, course.mib, strict=True))
+
+
+@pytest.mark.gl
+@pytest.mark.parametrize(
+    "pictures",
+    [200, pytest.param(5000, marks=[pytest.mark.long, pytest.mark.timeout(3600)])],
+)
+def test_memory_stays_flat_while_lights_and_shadow_maps_change(monkeypatch: pytest.MonkeyPatch, pictures: int) -> None:
+    """Limits that are soon reached; without them 200 pictures took 560 MiB."""
+    monkeypatch.setattr(texture_pool, "KEPT", 8 << 20)
+    monkeypatch.setattr(shared().programs.compiled, "limit", 8)
+    measure(lit_tasks(50), 50)
+    course = measure(lit_tasks(pictures), pictures // 100)
     assert course.growth < GROWTH, list(zip(course.pictures, course.mib, strict=True))
 
 
