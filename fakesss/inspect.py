@@ -9,7 +9,7 @@ from fakesss.colour import decode_srgb
 from fakesss.frame import Made
 from fakesss.frame_graph import Bake, FrameGraph, Plan, Verdict
 from fakesss.pipeline import NONE, build, samples_of
-from fakesss.renderer import PICTURE, shared_renderer
+from fakesss.renderer import PICTURE, timed_rendering
 from fakesss.savings import measured
 from fakesss.scene import Scene
 from fakesss.shapes import load_object
@@ -31,7 +31,7 @@ def document(plan: Plan, scene: Scene, timed: bool) -> dict[str, Any]:
     passes: dict[str, Any] = {}
     baked: dict[str, Made] = {}
     if timed:
-        drawn = shared_renderer().render(scene, timed=True)
+        drawn = timed_rendering(scene)
         passes, baked = {entry["name"]: entry["gpu_ms"] for entry in drawn.passes}, drawn.baked
     return {
         "passes": [
@@ -98,7 +98,7 @@ def draw(scene: Scene, path: str, timed: bool = False) -> None:
     from fakesss.graph_drawing import check_drawing, draw_graph  # loads matplotlib
 
     check_drawing(path)
-    drawn = shared_renderer().render(scene, timed=True).passes if timed else []
+    drawn = timed_rendering(scene).passes if timed else []
     draw_graph(compiled(scene), path, {entry["name"]: entry["gpu_ms"] for entry in drawn})
 
 

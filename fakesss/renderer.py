@@ -190,13 +190,24 @@ def render(scene: Scene, target: str = PICTURE) -> Any:
         raise BadInput(f"render: {error}") from None
 
 
-def render_file(scene: Scene, out: str | Path, views: bool = False) -> dict[str, Any]:
+def timed_rendering(scene: Scene) -> Rendering:
+    """The picture of `scene` with the GPU times of a second drawing.
+
+    The first also compiles programs, uploads the mesh and wakes the GPU, which takes many times as long as to draw;
+    what it had to bake is what is told of baking.
+    """
+    baked = shared_renderer().render(scene).baked
+    return replace(shared_renderer().render(scene, timed=True), baked=baked)
+
+
+def render_file(scene: Scene, out: str | Path, views: bool = False, timed: bool = True) -> dict[str, Any]:
     """Write the picture of `scene` (or with `views` the contact sheet of its intermediates) to a .png or .exr file.
 
-    Returns the contract's `render` document. Pixels that are not finite are among its warnings, and black in a PNG.
+    Returns the contract's `render` document, its times None unless `timed`, which draws twice.
+    Pixels that are not finite are among its warnings, and black in a PNG.
     """
     path = check_picture(out)
-    drawn = shared_renderer().render(scene, timed=True)
+    drawn = timed_rendering(scene) if timed else shared_renderer().render(scene)
     picture: NDArray[Any] = drawn.image
     if views:
         from fakesss.inspect import contact_sheet  # loads matplotlib

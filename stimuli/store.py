@@ -79,6 +79,7 @@ class Store:
 
     def put(self, key: str, drawn: Drawn) -> None:
         """Keep a picture."""
+        make_folder(self.waiting)
         write_atomically(self.waiting / f"{key}.png", drawn.png)
         write_atomically(self.waiting / f"{key}.json", json.dumps({**drawn.facts(), "build_key": key}).encode())
 

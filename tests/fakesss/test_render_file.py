@@ -11,8 +11,9 @@ from picture_scenes import sheet_file
 
 from fakesss import cli_picture
 from fakesss.image_io import encode_png, read_picture
+from fakesss.inspect import explain
 from fakesss.problem import BadInput
-from fakesss.renderer import Renderer, render_file
+from fakesss.renderer import Renderer, Rendering, render_file
 from fakesss.scene import Scene
 
 pytestmark = pytest.mark.gl
@@ -83,3 +84,22 @@ def test_pixels_that_are_not_finite_are_said_and_are_a_failure(tmp_path: Path, n
 def test_render_file_writes_the_contact_sheet(renderer: Renderer, tmp_path: Path) -> None:
     told = render_file(Scene(object="torus:4000", size=(31, 21)), tmp_path / "views.png", views=True)
     assert told["width"] > 1000 and (tmp_path / "views.png").is_file()
+
+
+def test_times_are_of_a_second_drawing(monkeypatch: pytest.MonkeyPatch, renderer: Renderer, tmp_path: Path) -> None:
+    """The first compiles and uploads; what it baked is still what is told."""
+    draws: list[bool] = []
+    render = Renderer.render
+
+    def noting(self: Renderer, scene: Scene, timed: bool = False) -> Rendering:
+        draws.append(timed)
+        return render(self, scene, timed)
+
+    monkeypatch.setattr(Renderer, "render", noting)
+    scene = Scene(object="torus:2344", size=(31, 21))
+    baked = {entry["name"]: entry["cached"] for entry in explain(scene, timed=True)["baked"] if entry["kept"]}
+    assert draws == [False, True] and baked["mesh"] is False
+    render_file(scene, tmp_path / "a.png")
+    assert draws == [False, True] * 2
+    told = render_file(scene, tmp_path / "a.png", timed=False)
+    assert draws[4:] == [False] and {entry["gpu_ms"] for entry in told["passes"]} == {None}

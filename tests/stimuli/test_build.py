@@ -6,6 +6,8 @@ import json
 import os
 import shutil
 import signal
+import subprocess
+import sys
 import time
 from pathlib import Path
 from typing import Any
@@ -16,7 +18,6 @@ import trimesh
 from PIL import Image
 
 from benchmarks.sweep import AtOnce
-from fakesss.output import replacing
 from fakesss.problem import BadInput
 from fakesss.renderer import Renderer
 from stimuli import build as building
@@ -288,22 +289,25 @@ def test_two_builds_at_once_are_refused_in_one_sentence(folder: Path) -> None:
     build(folder)
 
 
-def killed_while_writing(path: Path) -> None:
-    """Begins to write `path` and dies as by `kill -9`: nothing is tidied up."""
-    child = os.fork()
-    if child == 0:
-        with replacing(path) as waiting:
-            waiting.write_bytes(b"half")
-            os.kill(os.getpid(), signal.SIGKILL)
-    os.waitpid(child, 0)
+def killed_while_writing(*paths: Path) -> None:
+    """Begins to write `paths` and dies as by `kill -9`: nothing is tidied up."""
+    source = (
+        "import os, pathlib, signal, sys\n"
+        "from contextlib import ExitStack\n"
+        "from fakesss.output import replacing\n"
+        "with ExitStack() as begun:\n"
+        "    for path in map(pathlib.Path, sys.argv[1:]):\n"
+        "        begun.enter_context(replacing(path)).write_bytes(b'half')\n"
+        "    os.kill(os.getpid(), signal.SIGKILL)\n"
+    )
+    assert subprocess.run([sys.executable, "-c", source, *map(str, paths)]).returncode == -signal.SIGKILL
 
 
 def test_what_a_killed_build_left_half_written_is_removed(folder: Path) -> None:
     stimuli = folder / "stimuli"
     (stimuli / ".build").mkdir(parents=True)
     begun = [stimuli / ".build" / f"{'0a' * 32}.{kind}" for kind in ("png", "json")]
-    for path in (*begun, stimuli / "img01.png", stimuli / "img01r.png", stimuli / "manifest.json"):
-        killed_while_writing(path)
+    killed_while_writing(*begun, *(stimuli / name for name in ("img01.png", "img01r.png", "manifest.json")))
     assert len(list(stimuli.glob(".*.*.*"))) == 3 and len(list((stimuli / ".build").iterdir())) == 2
     (stimuli / ".notes.png.of_mine").write_text("kept")
     build(folder)
