@@ -103,7 +103,7 @@ PICTURES = [
     ),
     Case(
         "tall-picture",
-        "4096 pixels in a column. A test with larger counts draws 4096 x 4096.",
+        "4096 pixels in a column. A test of its own draws 4096 x 4096.",
         "The knot in its middle.",
         changes={"size": (16, 4096), "supersampling": 1},
     ),

@@ -1,4 +1,4 @@
-"""Thickness of every watertight case against rays through the same triangles, and by both exact methods."""
+"""Thickness of every watertight case against rays through the same triangles, and both exact methods of finding it."""
 
 from pathlib import Path
 from typing import Any
@@ -9,6 +9,7 @@ from catalogue import DRAWN
 from edges import off_edges
 from hard_case import Case
 from numpy.typing import NDArray
+from terms import largest
 
 from fakesss.camera import View
 from fakesss.mesh import Mesh
@@ -21,6 +22,7 @@ pytestmark = pytest.mark.gl
 # Errors in sphere diameters off the edges, over all cases together.
 LARGEST, P999, MEDIAN = 1e-4, 1e-5, 1e-6
 METHODS = 2e-5  # between the two exact methods: what the peel's epsilon and the interpolation of a depth amount to
+LIGHT = 1e-3  # the same in the picture, of the sum of its terms; found: no difference
 MOST_PIXELS = 160 * 160
 
 
@@ -60,21 +62,26 @@ def exact_layers(mesh: Mesh, scene: Scene) -> tuple[NDArray[np.float64], NDArray
 def test_peeled_and_automatic_layers_agree(renderer: Renderer, folder: Path, case: Case) -> None:
     scene = moderate(case.scene(folder))
     methods = [scene.replace({"layers.method": method}) for method in ("auto", "peel")]
-    auto, peel = (renderer.data(method, ("front", "thickness", "mesh")) for method in methods)
+    auto, peel = (renderer.data(method, ("front", "thickness", "image", "mesh")) for method in methods)
     np.testing.assert_array_equal(auto["front"], peel["front"])
     _, smooth = exact_layers(auto["mesh"], scene)
     assert np.abs(auto["thickness"] - peel["thickness"])[smooth].max(initial=0) <= METHODS
+    light = np.abs(auto["image"].astype(np.float64) - peel["image"])[smooth] / largest(scene)
+    assert light.max(initial=0) <= LIGHT
 
 
-def test_thickness_of_all_watertight_cases(
-    renderer: Renderer, folder: Path, record_property: Any, capsys: pytest.CaptureFixture[str]
-) -> None:
+def test_thickness_of_all_watertight_cases(renderer: Renderer, folder: Path, record_property: Any) -> None:
+    """Each picture of thickness once: what differs in light or material alone would be counted again."""
     errors: dict[str, NDArray[np.float64]] = {}
+    seen: set[bytes] = set()
     for case in CLOSED:
         scene = moderate(case.scene(folder))
         if View.of(scene.camera, scene.size).clips_sphere:
             continue
         drawn = renderer.data(scene, ("thickness", "mesh"))
+        if drawn["thickness"].tobytes() in seen:
+            continue
+        seen.add(drawn["thickness"].tobytes())
         exact, smooth = exact_layers(drawn["mesh"], scene)
         errors[case.name] = np.abs(drawn["thickness"] - exact)[smooth]
     pooled = np.concatenate(list(errors.values()))
@@ -82,10 +89,7 @@ def test_thickness_of_all_watertight_cases(
     worst = max(errors, key=lambda name: errors[name].max(initial=0))
     told = ", ".join(f"{name} {value:.1e}" for name, value in found.items())
     record_property("error of thickness", told)
-    with capsys.disabled():
-        for name in errors:
-            print(name, errors[name].max(initial=0), (errors[name] > 1e-4).sum())
-        print(f"\n{len(errors)} watertight cases, {pooled.size:,} pixels: {told} sphere diameters; largest in {worst}")
-    assert len(errors) >= 40 and pooled.size > 50_000
+    print(f"\n{len(errors)} watertight pictures, {pooled.size:,} pixels: {told} sphere diameters; largest in {worst}")
+    assert len(errors) >= 25 and pooled.size > 50_000
     assert found["max"] <= LARGEST, worst
     assert found["99.9%"] <= P999 and found["median"] <= MEDIAN

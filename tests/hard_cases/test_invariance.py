@@ -8,11 +8,11 @@ from typing import Any
 import numpy as np
 import pytest
 from catalogue import CASES, DRAWN
-from edges import off_edges
 from hard_case import Case
 from hard_meshes import Surface, ball, cube, glb, joined, needle, obj, ply, reversed_winding, ring, sheet, stl
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
+from same_picture import LAYERS, assert_same
 
 from fakesss.camera import View
 from fakesss.renderer import Renderer
@@ -20,7 +20,6 @@ from fakesss.scene import Scene
 
 pytestmark = pytest.mark.gl
 
-LAYERS = ("front", "second", "surface", "thickness", "image")
 SURFACES: dict[str, Callable[[], Surface]] = {
     "ball": ball,
     "ring": ring,
@@ -30,24 +29,11 @@ SURFACES: dict[str, Callable[[], Surface]] = {
     "hollow ball": lambda: joined(ball(), reversed_winding(ball(1280, 0.8))),
     "overlapping balls": lambda: joined(ball(1280, 0.7, (-0.3, 0, 0)), ball(1280, 0.7, (0.3, 0.1, 0.2))),
 }
-# Off the edges: thickness in sphere diameters, linear light. The worst found are 1e-6 and 1.3e-5.
-LARGEST, MEAN = {"thickness": 1e-5, "image": 1e-4}, 1e-6
-OUTLINE = 1e-3  # share of the picture that may be covered in one and not in the other; found: none
 
 
 def scene_of(path: Path) -> Scene:
     changes = {"object": str(path), "size": (96, 96), "supersampling": 1, "occlusion.rays": 64}
     return Scene().replace({**changes, "camera.azimuth": 20.0, "camera.elevation": 25.0})
-
-
-def assert_same(one: dict[str, Any], other: dict[str, Any]) -> None:
-    """Equal but for rounding, off the edges and on the whole."""
-    assert ((one["front"] > 0) != (other["front"] > 0)).mean() <= OUTLINE
-    smooth = off_edges(one) & off_edges(other)
-    for name in ("thickness", "image"):
-        difference = np.abs(one[name].astype(np.float64) - other[name])
-        assert difference[smooth].max(initial=0) <= LARGEST[name], name
-        assert difference[smooth].mean() <= MEAN if smooth.any() else True, name
 
 
 @functools.cache
