@@ -2,6 +2,7 @@
 
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 from numpy.typing import NDArray
@@ -62,11 +63,22 @@ def backlight_colour(scene: Scene) -> Array:
     return np.asarray(material.backlight * (np.array(material.diffuse) + material.diffuse_weight))
 
 
+def reflects(material: Material, intensity: tuple[float, ...]) -> bool:
+    """Whether Kd times `intensity` is not black."""
+    return any(share and light for share, light in zip(material.diffuse, intensity, strict=True))
+
+
 def none_shines(scene: Scene, term: str) -> str:
     """`light.ambient is 0`, if it is for every light."""
     if any(any(getattr(light, term)) for light in lights_of(scene)):
         return ""
     return f"light.{term} is 0" + (" in every light" if scene.lights else "")
+
+
+def none_reflected(scene: Scene, term: str) -> str:
+    """The same where each light has only colours that the material swallows."""
+    some = any(reflects(scene.material, getattr(light, term)) for light in lights_of(scene))
+    return when(not some, f"material.diffuse reflects none of the {term} light")
 
 
 def when(holds: bool, sentence: str) -> str:
@@ -82,7 +94,10 @@ def no_backlight(scene: Scene) -> str:
     return (
         no_exposure(scene)
         or when(scene.material.backlight == 0, "material.backlight is 0")
-        or when(not backlight_colour(scene).any(), "material.diffuse plus diffuse_weight is 0")
+        or when(
+            not any(share + scene.material.diffuse_weight for share in scene.material.diffuse),
+            "material.diffuse plus diffuse_weight is 0",
+        )
     )
 
 
@@ -97,20 +112,17 @@ def no_ambient(scene: Scene) -> str:
         no_exposure(scene)
         or when(scene.material.ambient == 0, "material.ambient is 0")
         or none_shines(scene, "ambient")
-        or when(not ambient_colour(scene).any(), "material.diffuse reflects none of the ambient light")
+        or none_reflected(scene, "ambient")
     )
 
 
 def no_diffuse(scene: Scene) -> str:
-    material = scene.material
+    zero = scene.material.diffuse_contribution == 0
     return (
         no_exposure(scene)
-        or when(material.diffuse_contribution == 0, "material.diffuse_contribution is 0")
+        or when(zero, "material.diffuse_contribution is 0")
         or none_shines(scene, "diffuse")
-        or when(
-            not any(diffuse_colour(material, light).any() for light in lights_of(scene)),
-            "material.diffuse reflects none of the diffuse light",
-        )
+        or none_reflected(scene, "diffuse")
     )
 
 
@@ -128,8 +140,13 @@ def shining(scene: Scene) -> tuple[Light, ...]:
     """The lights that add a diffuse or specular term."""
     if no_exposure(scene):
         return ()
-    colours = (diffuse_colour, specular_colour)
-    return tuple(light for light in lights_of(scene) if any(colour(scene.material, light).any() for colour in colours))
+    material = scene.material
+    highlight = material.specular and material.specular_contribution
+    return tuple(
+        light
+        for light in lights_of(scene)
+        if (material.diffuse_contribution and reflects(material, light.diffuse)) or (highlight and any(light.specular))
+    )
 
 
 def no_shadow(scene: Scene) -> str:
@@ -189,13 +206,13 @@ class Setting:
         known = EFFECTS[effect]
         return known.off(self.scene) or ("" if effect in self.forced else known.weightless(self.scene))
 
-    @property
+    @cached_property
     def shining(self) -> tuple[Light, ...]:
         """The lights whose diffuse and specular terms are computed: those that shine, unless these are forced."""
         in_vain = self.forced & {"diffuse", "specular", "shadows"}
         return lights_of(self.scene) if in_vain else shining(self.scene)
 
-    @property
+    @cached_property
     def casting(self) -> tuple[Light, ...]:
         """The lights with a shadow map."""
         return () if self.lacking("shadows") else tuple(light for light in self.shining if light.shadows)

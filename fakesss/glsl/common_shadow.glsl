@@ -1,5 +1,6 @@
 // Twin of shadow_maps.py: Williams, Casting curved shadows on curved surfaces, 1978; percentage-closer filtering:
 // Reeves, Salesin and Cook, Rendering antialiased shadows with depth maps, 1987. All maps stand in one texture.
+#include "common_light.glsl"
 #include "common_tile.glsl"
 
 #define SHADOW_LIGHTS 1  // length of the arrays

@@ -14,19 +14,18 @@ from fakesss.scene import Scene
 BACKLIGHT, OCCLUSION, SPECULAR = frozenset({"backlight", "blur"}), frozenset({"occlusion"}), frozenset({"specular"})
 
 
-@pytest.mark.parametrize(
-    ("changes", "effects"),
-    [
-        ({}, set()),
-        ({"material.backlight": 0.0}, {BACKLIGHT}),
-        ({"material.backlight": 0.0, "blur.enabled": False}, {frozenset({"backlight"})}),
-        ({"light.ambient": (0, 0, 0)}, {OCCLUSION}),
-        ({"light.ambient": (0, 0, 0), "occlusion.enabled": False}, set()),
-        ({"blur.enabled": False}, set()),
-        ({"material.specular": 0.0, "material.ambient": 0.0}, {SPECULAR, OCCLUSION}),
-    ],
-    ids=str,
-)
+IN_VAIN: list[tuple[dict[str, Any], set[frozenset[str]]]] = [
+    ({}, set()),
+    ({"material.backlight": 0.0}, {BACKLIGHT}),
+    ({"material.backlight": 0.0, "blur.enabled": False}, {frozenset({"backlight"})}),
+    ({"light.ambient": (0, 0, 0)}, {OCCLUSION}),
+    ({"light.ambient": (0, 0, 0), "occlusion.enabled": False}, set()),
+    ({"blur.enabled": False}, set()),
+    ({"material.specular": 0.0, "material.ambient": 0.0}, {SPECULAR, OCCLUSION}),
+]
+
+
+@pytest.mark.parametrize(("changes", "effects"), IN_VAIN, ids=[str(changes) for changes, _ in IN_VAIN])
 def test_what_weighs_nothing_and_is_not_switched_off(changes: dict[str, Any], effects: set[frozenset[str]]) -> None:
     found = in_vain(Scene().replace(changes))
     assert found.keys() == effects
