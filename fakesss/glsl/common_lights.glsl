@@ -1,4 +1,5 @@
 // The diffuse and specular terms of equation 3.6, summed over the lights that shine.
+#include "common_exact.glsl"
 #include "common_light.glsl"
 #include "common_view.glsl"
 
@@ -44,8 +45,9 @@ float arriving(int i, vec3 point, out vec3 to_light) {
 #endif
 }
 
-// `colour` and what the lights add to it; `point` counts only where lights have a place or cast shadows.
-vec3 lit(vec3 colour, vec3 normal, vec3 point, vec2 place) {
+// What was there `before` and what the lights add to it; `point` counts only where lights have a place or cast shadows.
+vec3 lit(vec3 before, vec3 normal, vec3 point, vec2 place) {
+    EXACT vec3 colour = before;
     for (int i = 0; i < LIGHTS; ++i) {
         vec3 to_light;
         float share = arriving(i, point, to_light);
@@ -53,11 +55,13 @@ vec3 lit(vec3 colour, vec3 normal, vec3 point, vec2 place) {
 #if HAS_SHADOW_MAPS
         if (n_dot_l > 0.0 && share > 0.0) share *= unshadowed(i, point, normal, n_dot_l);
 #endif
-        colour += share * lambert(n_dot_l) * diffuse_colour[i];
+        EXACT vec3 scattered = share * lambert(n_dot_l) * diffuse_colour[i];
+        colour += scattered;
 #if HIGHLIGHT
         vec3 between = to_light + to_viewer(place);  // the zero vector where the light is straight behind what is seen
         vec3 halfway = between * inversesqrt(max(dot(between, between), 1e-20));
-        colour += share * blinn_phong(n_dot_l, dot(normal, halfway), shininess) * specular_colour[i];
+        EXACT vec3 mirrored = share * blinn_phong(n_dot_l, dot(normal, halfway), shininess) * specular_colour[i];
+        colour += mirrored;
 #endif
     }
     return colour;

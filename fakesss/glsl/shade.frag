@@ -1,4 +1,5 @@
 // Lighting equation 3.6: Gascons, Fast simulation of translucent objects, 2011.
+#include "common_exact.glsl"
 #include "common_brdf.glsl"
 #include "common_layers.glsl"
 
@@ -60,7 +61,7 @@ void main() {
     vec2 place = gl_FragCoord.xy / vec2(textureSize(surface, 0));
     vec4 normal_occlusion = texture(surface, place);
     vec3 normal = normal_occlusion.xyz;
-    vec3 colour = normal_occlusion.w * ambient_colour;
+    EXACT vec3 colour = normal_occlusion.w * ambient_colour;
 #if HAS_SCREEN_OCCLUSION
     colour *= texture(screen_occlusion, place).r;
 #endif
@@ -73,7 +74,8 @@ void main() {
     colour = lit(colour, normal, point, place);
 #endif
 #if HAS_THICKNESS || HAS_BLURRED_THICKNESS
-    colour += backlight(thickness_here(place), thickness_exponent) * backlight_colour;
+    EXACT vec3 through = backlight(thickness_here(place), thickness_exponent) * backlight_colour;
+    colour += through;
 #elif CONSTANT_BACKLIGHT
     colour += backlight_colour;
 #endif

@@ -1,5 +1,6 @@
 """What weighs nothing changes nothing: the culled picture is, byte for byte, the one with the effect forced on."""
 
+import random
 from typing import Any
 
 import pytest
@@ -96,3 +97,32 @@ def test_what_is_switched_off_cannot_be_forced() -> None:
     scene = Scene().replace({"occlusion.enabled": False, "blur.enabled": False})
     for effect in ("occlusion", "blur"):
         assert EFFECTS[effect].off(scene) and not EFFECTS[effect].weightless(scene)
+
+
+def any_scene(lot: random.Random) -> Scene:
+    """A small picture with some weights at zero, others far out, and up to two further lights of any kind."""
+    dark, bright = (0.0, 0.0, 0.0), (1.0, 0.5, 0.25)
+    kinds = ("directional", "point", "spot")
+    light = {"kind": lot.choice(kinds), "shadows": lot.random() < 0.4}
+    intensities = {term: lot.choice((dark, bright, (1e6, 1.0, 0.0))) for term in ("ambient", "diffuse", "specular")}
+    weights = ("backlight", "ambient", "specular", "specular_contribution")
+    return Scene(object="knot:4000", size=(48, 36), supersampling=lot.choice((1, 2))).replace(
+        {
+            "occlusion.rays": 16,
+            "occlusion.method": lot.choice(("baked", "screen-space")),
+            "material.thickness": lot.choice(("first-interval", "total-path", "bridged")),
+            "lights": [{**light, "kind": lot.choice(kinds), "diffuse": dark} for _ in range(lot.randint(0, 2))],
+            **{f"light.{name}": value for name, value in (*light.items(), *intensities.items())},
+            **{f"material.{name}": lot.choice((0.0, 0.7, 1e6)) for name in weights},
+            "material.diffuse_contribution": lot.choice((-1.0, 0.0, 0.13)),
+            "material.thickness_exponent": lot.choice((0.0, 25.0)),
+        }
+    )
+
+
+@pytest.mark.gl
+@pytest.mark.parametrize("seed", range(120))
+def test_culling_changes_no_byte_of_any_scene(renderer: Renderer, seed: int) -> None:
+    scene = any_scene(random.Random(seed))
+    forced = renderer.render(scene, forced=frozenset(EFFECTS)).image
+    assert renderer.render(scene).image.tobytes() == forced.tobytes()
