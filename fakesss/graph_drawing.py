@@ -34,8 +34,8 @@ def draw_graph(graph: Plan, path: str | Path, gpu_ms: Mapping[str, float | None]
     path = check_drawing(path)
     undated = {"Date": None} if path.suffix.lower() == ".svg" else {}
     kind = path.suffix[1:].lower()
-    options = {"svg.fonttype": "none", "svg.hashsalt": "fakesss"}  # text stays text; equal bytes
-    with matplotlib.rc_context(options), replacing(path) as waiting:
+    with replacing(path) as waiting, matplotlib.rc_context({"svg.fonttype": "none", "svg.hashsalt": "fakesss"}):
+        # text stays text; equal bytes
         drawn(graph, gpu_ms or {}).savefig(waiting, dpi=DPI, metadata=undated, facecolor=PAPER, format=kind)
 
 

@@ -20,6 +20,7 @@ from stimuli.background import Background
 from stimuli.design import Stimulus, stimuli_of
 from stimuli.manifest import FORMAT, manifest_path, read_manifest, sha256, stimulus_entry, study_entry, write_manifest
 from stimuli.picture import Drawn, build_key, draw, software
+from stimuli.sources import check_sources
 from stimuli.store import Store, one_build_at_a_time, up_to_date
 from stimuli.study import Study
 
@@ -34,6 +35,7 @@ def build(folder: Path, *, jobs: int = 1, force: bool = False, quiet: bool | Non
     """
     study = Study.load(folder)
     stimuli = stimuli_of(study)
+    check_sources(study, stimuli, folder)
     made_by = software()
     keys = {stimulus.id: build_key(stimulus, study.scene.size, folder, made_by) for stimulus in stimuli}
     store = Store(folder)
@@ -111,7 +113,9 @@ def verify(folder: Path, *, quiet: bool | None = None) -> list[str]:
     study = Study.load(folder)
     listed = {entry["id"]: entry for entry in read_manifest(folder)["stimuli"]}
     problems = []
-    for stimulus in tqdm(stimuli_of(study), desc="verifying", unit="picture", disable=quiet):
+    stimuli = stimuli_of(study)
+    check_sources(study, stimuli, folder)
+    for stimulus in tqdm(stimuli, desc="verifying", unit="picture", disable=quiet):
         entry = listed.pop(stimulus.id, None)
         if entry is None:
             problems.append(f"{stimulus.id}: the design has it, the manifest does not; run `fakesss build`")

@@ -8,7 +8,7 @@ from typing import Literal
 
 from fakesss.problem import BadInput
 from fakesss.scene import Scene
-from stimuli.study import Factor, Level, Study
+from stimuli.study import Factor, Level, Study, written
 
 Role = Literal["factor", "compare", "control", "repeat"]
 
@@ -60,7 +60,8 @@ def full_factorial(study: Study) -> Iterator[Stimulus]:
 
 def stimulus(study: Study, levels: dict[str, Level], rows: list[Factor] | tuple[Factor, ...]) -> Stimulus:
     """The picture at `levels`, shown for the comparison of each factor in `rows`."""
-    scene = study.scene.replace({factor.path: levels[factor.name] for factor in study.factor})
+    place = "study.toml: " + ", ".join(f'factor "{name}" level {written(level)}' for name, level in levels.items())
+    scene = study.scene.replace({factor.path: levels[factor.name] for factor in study.factor}, place)
     label = ", ".join(f"{factor.name} {shown(levels[factor.name])}" for factor in rows)
     names = tuple(factor.name for factor in rows)
     return Stimulus("", label, "factor", scene, factors=tuple(levels.items()), rows=names)

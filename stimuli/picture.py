@@ -54,17 +54,15 @@ def software() -> dict[str, str]:
 
 def build_key(stimulus: Stimulus, size: tuple[int, int], folder: Path, made_by: dict[str, str]) -> str:
     """Hash of everything the picture's bytes depend on."""
-    from fakesss.shapes import is_mesh_file, shape_and_faces
+    from fakesss.shapes import is_mesh_file
 
     depends: dict[str, Any] = {"software": made_by, "source": source_sha256(), "size": size}
     if stimulus.scene is None:
-        depends["image"] = file_sha256(folder / str(stimulus.image))
+        depends["image"] = sha256((folder / str(stimulus.image)).read_bytes())
     else:
         depends["scene"] = stimulus.scene.model_dump(mode="json")
         if is_mesh_file(stimulus.scene.object):
-            depends["mesh"] = file_sha256(folder / stimulus.scene.object)
-        else:
-            shape_and_faces(stimulus.scene.object)  # a misspelt name is said before anything is drawn
+            depends["mesh"] = sha256((folder / stimulus.scene.object).read_bytes())
     return sha256(json.dumps(depends, sort_keys=True).encode())
 
 
@@ -105,16 +103,6 @@ def read_made_elsewhere(stimulus: Stimulus, size: tuple[int, int], folder: Path)
             f"{size[0]}x{size[1]}; resize it or set scene.size"
         )
     return Drawn(encode_png8(pixels), width, height, (), tuple(warnings))
-
-
-def file_sha256(path: Path) -> str:
-    """SHA-256 of a file the study names, or `BadInput`."""
-    try:
-        return sha256(path.read_bytes())
-    except OSError as error:
-        raise BadInput(
-            f"study.toml: {path.name}: cannot be read ({error.strerror or error}); check the file's name and place"
-        ) from None
 
 
 @cache

@@ -4,17 +4,36 @@ The tables that concern participants and statistics (`[[question]]`, `[survey]`,
 """
 
 import hashlib
+import json
 import math
+import re
+from collections.abc import Mapping
 from pathlib import Path
 from typing import Annotated, Any, Literal, Self
 
-from pydantic import Field, field_validator, model_validator
+from pydantic import Field, model_validator
 
 from fakesss.problem import BadInput, Strict, validated
 from fakesss.scene import Scene, check_path, read_toml
 
 Level = str | bool | int | float | tuple[float | int, ...]
-PLAIN = (str, bool, int, float)
+
+
+def is_number(value: Any) -> bool:
+    """Whether `value` is a finite number; true and false are none."""
+    return isinstance(value, int | float) and not isinstance(value, bool) and math.isfinite(value)
+
+
+def is_list_of_numbers(value: Any) -> bool:
+    """Whether `value` is a list of at least one finite number."""
+    return isinstance(value, list) and len(value) > 0 and all(map(is_number, value))
+
+
+def written(level: Any) -> str:
+    """A level as it stands in study.toml: -3, true, "spot", [1, 1]."""
+    if isinstance(level, list | tuple):
+        return "[" + ", ".join(map(written, level)) + "]"
+    return json.dumps(level, ensure_ascii=False) if isinstance(level, str | bool) else str(level)
 
 
 class Factor(Strict):
@@ -23,21 +42,6 @@ class Factor(Strict):
     name: Annotated[str, Field(min_length=1)]
     path: Annotated[str, Field(description="a scene field, for example material.backlight")]
     levels: tuple[Level, ...]
-
-    @field_validator("levels", mode="before")
-    @classmethod
-    def _levels_are_values(cls, given: Any) -> Any:
-        """Said in our words: pydantic would name every branch of the union."""
-        if not isinstance(given, list | tuple) or not given:
-            raise ValueError("must be a list of at least one level, for example [0.8, 1.2]")
-        for level in given:
-            parts = level if isinstance(level, list | tuple) and level else [level]
-            numbers = [part for part in parts if isinstance(part, float)]
-            if not all(isinstance(part, PLAIN) for part in parts) or not all(map(math.isfinite, numbers)):
-                raise ValueError(
-                    f"level {level!r} must be a finite number, true or false, a word, or a list of numbers"
-                )
-        return tuple(tuple(level) if isinstance(level, list) else level for level in given)
 
 
 class Design(Strict):
@@ -76,7 +80,9 @@ class Study(Strict):
     def load(cls, folder: Path) -> Self:
         """The study in `folder/study.toml`, or `BadInput` in one sentence."""
         path = study_file(folder)
-        study = validated(cls, read_toml(path), path.name)
+        tables = read_toml(path)
+        check_levels_are_values(tables, path.name)
+        study = validated(cls, tables, path.name)
         check_opaque(study.scene, f"{path.name}: scene.alpha")
         for factor in study.factor:
             check_factor(factor, study.scene, path.name)
@@ -118,18 +124,41 @@ def check_opaque(scene: Scene, where: str) -> None:
         raise BadInput(f"{where}: a browser would show its page through the picture; set alpha = false")
 
 
+def check_levels_are_values(tables: Mapping[str, Any], source: str) -> None:
+    """`BadInput` for a level that no field could have, in our words: pydantic would name every branch of a union."""
+    factors = tables.get("factor")
+    for number, factor in enumerate(factors if isinstance(factors, list) else [], 1):
+        if not isinstance(factor, Mapping) or "levels" not in factor:
+            continue  # said by the model
+        name, levels = factor.get("name"), factor["levels"]
+        where = f'{source}: factor "{name}"' if isinstance(name, str) else f"{source}: factor[{number}]"
+        if not isinstance(levels, list) or not levels:
+            raise BadInput(f"{where}: levels {written(levels)}: must be a list of at least one, for example [0.8, 1.2]")
+        for level in levels:
+            if not (is_number(level) or isinstance(level, str | bool) or is_list_of_numbers(level)):
+                must = "must be a finite number, true or false, a word, or a list of numbers"
+                raise BadInput(f"{where}: level {written(level)}: {must}")
+
+
 def check_factor(factor: Factor, base: Scene, source: str) -> None:
     """Every level of `factor` gives a valid scene, or `BadInput` naming factor, level and mend."""
     where = f'{source}: factor "{factor.name}"'
     check_path(factor.path, where, len(base.lights))
     seen: list[Any] = []
     for level in factor.levels:
+        place = f"{where}: level {written(level)}"
         try:
-            value = base.replace({factor.path: level}).at(factor.path)
+            scene = base.replace({factor.path: level}, place)
         except BadInput as error:
-            mend = str(error).rsplit(": ", 1)[-1]
-            raise BadInput(f"{where}: level {level!r}: {mend}") from None
-        check_opaque(base.replace({factor.path: level}), f"{where}: level {level!r}")
+            raise BadInput(without_the_level(str(error), place, factor.path)) from None
+        check_opaque(scene, place)
+        value = scene.at(factor.path)
         if value in seen:
-            raise BadInput(f"{where}: level {level!r} stands twice; remove one")
+            raise BadInput(f"{place} stands twice; remove one")
         seen.append(value)
+
+
+def without_the_level(sentence: str, place: str, path: str) -> str:
+    """The sentence about a level, which `place` names already, with no second mention of it or of the factor's path."""
+    about = re.match(rf"{re.escape(f'{place}: {path}: ')}(?:.*?: )(?=must )", sentence)
+    return f"{place}: {sentence[about.end() :]}" if about else sentence

@@ -71,14 +71,22 @@ def test_a_level_out_of_range(study: Path) -> None:
 
 def test_a_missing_mesh(study: Path) -> None:
     (study / "study.toml").write_text(STUDY.replace("sphere:4000", "bunny.ply"), encoding="utf-8")
-    expect_sentence(fakesss("build", study), "study.toml: bunny.ply: cannot be read (No such file", "check the file's")
+    expect_sentence(
+        fakesss("build", study),
+        'study.toml: scene.object "bunny.ply": cannot be read (No such file',
+        "check the file's",
+    )
     assert not (study / "stimuli").exists()
 
 
 def test_a_misspelt_object_is_said_before_anything_is_drawn(study: Path) -> None:
     factor = '[[factor]]\nname = "object"\npath = "object"\nlevels = ["sphere:4000", "shpere"]\n'
     (study / "study.toml").write_text(STUDY.replace(FACTOR, factor), encoding="utf-8")
-    expect_sentence(fakesss("build", study), 'object "shpere": is neither', 'did you mean "sphere"?')
+    expect_sentence(
+        fakesss("build", study),
+        'study.toml: factor "object": level "shpere": object "shpere": is neither',
+        'did you mean "sphere"?',
+    )
     assert not (study / "stimuli").exists()
 
 

@@ -237,7 +237,7 @@ def test_a_mesh_is_looked_for_beside_the_study_only(
     (folder / "study.toml").write_text(STUDY.replace("torus:4000", "thing.ply"), encoding="utf-8")
     trimesh.creation.icosphere(1).export(tmp_path / "thing.ply")
     monkeypatch.chdir(tmp_path)
-    with pytest.raises(BadInput, match=r"thing\.ply: cannot be read"):
+    with pytest.raises(BadInput, match=r'scene\.object "thing\.ply": cannot be read'):
         build(folder)
 
 

@@ -6,6 +6,7 @@ import pytest
 
 from fakesss.problem import BadInput
 from stimuli.design import stimuli_of
+from stimuli.sources import check_sources
 from stimuli.study import Study
 from stimuli.template import template_names, write_template
 
@@ -64,11 +65,20 @@ def test_an_unknown_template_names_the_nearest(tmp_path: Path) -> None:
             'title = "x"\n[design]\nkind = "latin"\n' + FACTOR,
             "study.toml: design.kind: 'latin': must be 'one-at-a-time'",
         ),
-        ('title = "x"\n' + FACTOR.replace("18", '"18"'), "level '18': must be a valid number"),
-        ('title = "x"\n' + FACTOR.replace("18", "true"), "level True: must be a valid number"),
-        ('title = "x"\n' + FACTOR.replace("[25, 18]", "[]"), "must be a list of at least one level"),
-        ('title = "x"\n' + FACTOR.replace("18", "inf"), "level inf must be a finite number"),
-        ('title = "x"\n' + FACTOR.replace("18", "1979-05-27"), "level '1979-05-27': must be a valid number"),
+        (
+            'title = "x"\n' + FACTOR.replace("18", '"18"'),
+            'study.toml: factor "thickness": level "18": must be a valid number',
+        ),
+        ('title = "x"\n' + FACTOR.replace("18", "true"), "level true: must be a valid number"),
+        (
+            'title = "x"\n' + FACTOR.replace("[25, 18]", "[]"),
+            'factor "thickness": levels []: must be a list of at least one',
+        ),
+        ('title = "x"\n' + FACTOR.replace("18", "inf"), 'factor "thickness": level inf: must be a finite number'),
+        (
+            'title = "x"\n' + FACTOR.replace("18", "1979-05-27"),
+            "level 1979-05-27: must be a finite number, true or false, a word",
+        ),
         ('title = "x"\n' + FACTOR.replace('"thickness"', '"=thickness"'), "would be a formula in a spreadsheet"),
         (
             'title = "x"\n[[scene.lights]]\n[[factor]]\nname = "fill"\npath = "lights.1.azimuth"\nlevels = [0, 90]\n',
@@ -95,3 +105,58 @@ def test_a_factor_may_vary_a_further_light(tmp_path: Path) -> None:
     study = load(tmp_path, f'title = "x"\n[[scene.lights]]\nkind = "spot"\n{factor}')
     scenes = {one.scene.lights[0].diffuse for one in stimuli_of(study) if one.scene}
     assert scenes == {(0, 0, 0), (0.5, 0.5, 1)}
+
+
+LIT = 'title = "x"\n[design]\nkind = "full-factorial"\n[[scene.lights]]\n[[factor]]\nname = "f"\npath = '
+
+
+@pytest.mark.parametrize(
+    ("factor", "sentence"),
+    [
+        (
+            '"lights.0.diffuse"\nlevels = [["1", "1", "1"]]',
+            'level ["1", "1", "1"]: must be a finite number, true or false, a word, or a list of numbers',
+        ),
+        ('"lights.0.diffuse"\nlevels = [[1, true, 1]]', "level [1, true, 1]: must be a finite number, true"),
+        ('"lights.0.diffuse"\nlevels = [[1, 1]]', "level [1, 1]: lights.0.diffuse[3]: is missing; add it"),
+        ('"lights.0.diffuse"\nlevels = [[1, 1, 1, 1]]', "level [1, 1, 1, 1]: must have at most 3 items, not 4"),
+        ('"lights.0.diffuse"\nlevels = [[1, -1, 1]]', "level [1, -1, 1]: lights.0.diffuse[2]: -1: must be >= 0"),
+        ('"lights.0.attenuation"\nlevels = [[0, 0, 0]]', "level [0, 0, 0]: lights.0: attenuation (0, 0, 0) divides"),
+        ('"lights.0.kind"\nlevels = ["a: b"]', "level \"a: b\": must be 'directional', 'point' or 'spot'"),
+        ('"lights.0.azimuth"\nlevels = 5', "levels 5: must be a list of at least one"),
+        ('"camera.near"\nlevels = [1.0, 1.0]', "level 1.0 stands twice; remove one"),
+        ('"alpha"\nlevels = [false, true]', "level true: a browser would show its page through the picture; set alpha"),
+    ],
+)
+def test_a_level_that_cannot_be_is_named_as_it_is_written(tmp_path: Path, factor: str, sentence: str) -> None:
+    with pytest.raises(BadInput) as caught:
+        load(tmp_path, f"{LIT}{factor}\n")
+    assert str(caught.value).startswith(f'study.toml: factor "f": {sentence}')
+
+
+def test_levels_that_do_not_go_together_are_named(tmp_path: Path) -> None:
+    far = '[[factor]]\nname = "far"\npath = "camera.far"\nlevels = [3, 1.5]\n'
+    study = load(tmp_path, f'{LIT}"camera.near"\nlevels = [1, 2]\n{far}')
+    with pytest.raises(BadInput) as caught:
+        stimuli_of(study)
+    assert str(caught.value) == (
+        'study.toml: factor "f" level 2, factor "far" level 1.5: camera: near 2.0 must be < far 1.5'
+    )
+
+
+@pytest.mark.parametrize(
+    ("text", "place"),
+    [
+        ('[scene]\nobject = "shpere"\n' + FACTOR, 'scene.object "shpere": object "shpere": is neither'),
+        (
+            '[[factor]]\nname = "o"\npath = "object"\nlevels = ["sphere", "a.ply"]\n',
+            'factor "o": level "a.ply": cannot be read (No such file or directory); check the file\'s name',
+        ),
+        ('[[compare]]\nimage = "b.png"\n', 'compare "b.png": cannot be read (No such file or directory); check'),
+    ],
+)
+def test_what_pictures_are_made_from_is_looked_for_and_its_place_named(tmp_path: Path, text: str, place: str) -> None:
+    study = load(tmp_path, f'title = "x"\n{text}')
+    with pytest.raises(BadInput) as caught:
+        check_sources(study, stimuli_of(study), tmp_path)
+    assert str(caught.value).startswith(f"study.toml: {place}")
