@@ -20,7 +20,13 @@ if TYPE_CHECKING:
 
 # What a picture's bytes come from besides our own source: shapes, repairs, occlusion, drawing, encoding.
 LIBRARIES = ("moderngl", "numpy", "scipy", "trimesh", "embreex", "scikit-image", "fast-simplification", "pillow")
-NOT_DRAWING = ("cli", "doctor", "inspect", "contact_sheet")
+# Our own source that no stimulus comes from, by stem; everything else makes pictures stale when it changes.
+COMMANDS = ("__main__", "cli", "cli_measure", "cli_picture", "cli_study", "doctor")
+TIMES = ("bench", "bench_bake", "bench_tables", "direct", "direct_light", "savings")
+LOOKS = ("inspect", "views", "contact_sheet", "explanation", "graph_drawing", "graph_layout")
+PLOTS = ("profile_plot", "relief", "lighting_terms")
+CHECKS = ("depth_checks", "hard_edges", "reference")
+NOT_DRAWING = frozenset((*COMMANDS, *TIMES, *LOOKS, *PLOTS, *CHECKS))
 
 
 @dataclass(frozen=True)
@@ -108,9 +114,14 @@ def read_made_elsewhere(stimulus: Stimulus, size: tuple[int, int], folder: Path)
 @cache
 def source_sha256() -> str:
     """Hash of the source that draws, so that a changed shader makes its pictures stale."""
-    root = Path(fakesss.__file__).parent
     digest = hashlib.sha256()
-    for path in sorted([*root.rglob("*.py"), *root.rglob("glsl/*"), Path(__file__)]):
-        if path.is_file() and not path.stem.startswith(NOT_DRAWING):
-            digest.update(path.name.encode() + b"\0" + path.read_bytes())
+    for path in drawing_files():
+        digest.update(path.name.encode() + b"\0" + path.read_bytes())
     return digest.hexdigest()
+
+
+def drawing_files() -> list[Path]:
+    """The source that pictures come from: modules, shaders and this file."""
+    root = Path(fakesss.__file__).parent
+    ours = sorted([*root.rglob("*.py"), *root.rglob("glsl/*"), Path(__file__)])
+    return [path for path in ours if path.is_file() and path.stem not in NOT_DRAWING]
