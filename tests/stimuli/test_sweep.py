@@ -80,7 +80,7 @@ def test_a_turning_camera_writes_over_the_same_buffers(tmp_path: Path, made: lis
     assert {name for picture in made[1:] for name in picture} <= SETTLING | {"Buffer.write"}
 
 
-GROWTH = 12  # MiB in the last 90 % of a sweep; single measurements are 4 apart, one object left behind a pass was 78
+GROWTH = 24  # MiB in the last 90 % of a sweep; single measurements scatter by 13, one object left behind a pass was 78
 
 
 @pytest.mark.gl
