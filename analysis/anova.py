@@ -107,7 +107,9 @@ def sphericity(wide: pd.DataFrame, f: float, df1: int, df2: int) -> dict[str, fl
         p = float(stats.f.sf(f, df1, df2))
         return {"epsilon_gg": 1.0, "p_gg": p, "epsilon_hf": 1.0, "p_hf": p, "mauchly_w": np.nan, "mauchly_p": np.nan}
     gg = float(pingouin.epsilon(wide, correction="gg"))
-    hf = float(pingouin.epsilon(wide, correction="hf"))
+    # of as many people as levels, an even spread leaves Huynh and Feldt's fraction nothing to divide by: its limit is 1
+    spare = len(wide) - 1 - df1 * gg
+    hf = float(pingouin.epsilon(wide, correction="hf")) if spare > ROUNDING else 1.0
     w = p_mauchly = np.nan
     if len(wide) > wide.shape[1]:
         test = pingouin.sphericity(wide)

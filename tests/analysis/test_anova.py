@@ -113,6 +113,12 @@ def test_effect_intervals_agree_with_p(table: list[list[int]]) -> None:
         assert row[f"{name}ci_low"] - 1e-9 <= row[estimate] <= 1 and row[f"{name}ci_low"] <= row[f"{name}ci_high"] <= 1
 
 
+def test_as_many_people_as_levels_spread_evenly() -> None:
+    """Huynh and Feldt's epsilon is a fraction over 0 there; held to 1, which is its limit."""
+    row = REPEATED(long([[1, 1, 1], [1, 1, 2], [2, 3, 3]])).iloc[0]
+    assert row["epsilon_gg"] == pytest.approx(1) and row["epsilon_hf"] == 1 and row["p_hf"] == pytest.approx(row["p"])
+
+
 def test_people_who_differ_much_leave_a_sure_effect_sure() -> None:
     """F(2, 78) = 31.9, p < .0001 with subjects of 40 times the error: a small generalized effect, surely not none."""
     found = effect_sizes(31.9 * 2 / 78, 40.0, 1.0, 2, 78)
