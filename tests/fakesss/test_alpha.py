@@ -81,7 +81,7 @@ FACTOR = '[[factor]]\nname = "x"\npath = "{}"\nlevels = {}\n'
     ("text", "sentence"),
     [
         ("[scene]\nalpha = true\n" + FACTOR.format("exposure", "[1.0]"), r"study.toml: scene.alpha: a browser would"),
-        (FACTOR.format("alpha", "[false, true]"), r'study.toml: factor "x": level True: a browser would'),
+        (FACTOR.format("alpha", "[false, true]"), r'study.toml: factor "x": level true: a browser would'),
     ],
 )
 def test_a_study_refuses_it(tmp_path: Path, text: str, sentence: str) -> None:
