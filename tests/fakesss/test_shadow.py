@@ -278,32 +278,3 @@ def test_a_spot_in_the_plane_of_a_surface_leaves_it_finite(renderer: Renderer, t
     assert drawn.non_finite == 0
     dark = renderer.render(scene.replace({"light.diffuse": (0, 0, 0), "light.specular": (0, 0, 0)}))
     np.testing.assert_array_equal(drawn.image[floor], dark.image[floor])
-
-
-@pytest.mark.gl
-def test_a_sweep_draws_its_shadow_maps_once(renderer: Renderer) -> None:
-    """They are drawn again when light, camera, object or map change, and the pictures are as if drawn afresh."""
-    scene = Scene(object="knot:4000", size=(48, 48)).replace({"light.shadows": True, "material.backlight": 0.3})
-    moving: list[dict[str, Any]] = [
-        {"light.azimuth": 10.0},
-        {"camera.azimuth": 10.0},
-        {"object": "torus:4000"},
-        {"shadow.map_size": 64},
-        {"light.kind": "point", "light.distance": 0.5},
-    ]
-    still: list[dict[str, Any]] = [{}, {"light.diffuse": (0.1, 0.2, 0.3)}, {"shadow.filter": "hard"}, {"exposure": 0.5}]
-    fresh = []
-    for changes in (*moving, *still):
-        renderer.gpu.drawn.clear()
-        fresh.append(renderer.render(scene.replace(changes)).image.tobytes())
-    for changes, expected in zip(moving, fresh[: len(moving)], strict=True):
-        renderer.render(scene)
-        before = next(iter(renderer.gpu.drawn.values))
-        assert renderer.render(scene.replace(changes)).image.tobytes() == expected
-        assert next(iter(renderer.gpu.drawn.values)) != before
-    renderer.render(scene)
-    maps = next(iter(renderer.gpu.drawn.values))
-    for changes, expected in zip(still, fresh[len(moving) :], strict=True):
-        assert renderer.render(scene.replace(changes)).image.tobytes() == expected
-        assert next(iter(renderer.gpu.drawn.values)) == maps
-    assert renderer.data(scene, ("shadow_maps",))["shadow_maps"].shape == (192, 192)

@@ -1,10 +1,13 @@
-"""Where shadow maps look and where they stand in their texture, without a GPU."""
+"""Where shadow maps look, where they stand in their texture, and how long they are kept."""
+
+from typing import Any
 
 import numpy as np
 import pytest
 
 from fakesss.camera import View
 from fakesss.lights import Light
+from fakesss.renderer import Renderer
 from fakesss.scene import Scene
 from fakesss.shadow_maps import SIDES, atlas, is_outside, map_views, slope_bias
 
@@ -65,3 +68,32 @@ def test_the_bias_follows_the_slope_between_once_and_twice() -> None:
     degrees = np.array([0.0, 30.0, 45.0, 60.0, 63.0, 70.0, 90.0])
     expected = 1e-3 * np.clip(np.tan(np.radians(degrees)), 1, 2)
     np.testing.assert_allclose(slope_bias(1e-3, np.cos(np.radians(degrees))), expected)
+
+
+@pytest.mark.gl
+def test_a_sweep_draws_its_shadow_maps_once(renderer: Renderer) -> None:
+    """They are drawn again when light, camera, object or map change, and the pictures are as if drawn afresh."""
+    scene = Scene(object="knot:4000", size=(48, 48)).replace({"light.shadows": True, "material.backlight": 0.3})
+    moving: list[dict[str, Any]] = [
+        {"light.azimuth": 10.0},
+        {"camera.azimuth": 10.0},
+        {"object": "torus:4000"},
+        {"shadow.map_size": 64},
+        {"light.kind": "point", "light.distance": 0.5},
+    ]
+    still: list[dict[str, Any]] = [{}, {"light.diffuse": (0.1, 0.2, 0.3)}, {"shadow.filter": "hard"}, {"exposure": 0.5}]
+    fresh = []
+    for changes in (*moving, *still):
+        renderer.gpu.drawn.clear()
+        fresh.append(renderer.render(scene.replace(changes)).image.tobytes())
+    for changes, expected in zip(moving, fresh[: len(moving)], strict=True):
+        renderer.render(scene)
+        before = next(iter(renderer.gpu.drawn.values))
+        assert renderer.render(scene.replace(changes)).image.tobytes() == expected
+        assert next(iter(renderer.gpu.drawn.values)) != before
+    renderer.render(scene)
+    maps = next(iter(renderer.gpu.drawn.values))
+    for changes, expected in zip(still, fresh[len(moving) :], strict=True):
+        assert renderer.render(scene.replace(changes)).image.tobytes() == expected
+        assert next(iter(renderer.gpu.drawn.values)) == maps
+    assert renderer.data(scene, ("shadow_maps",))["shadow_maps"].shape == (192, 192)
