@@ -204,7 +204,8 @@ class FrameGraph:
 
     def to_dot(self, plan: Plan | None = None) -> str:
         """Graphviz source: passes as boxes, baked inputs as houses, resources as edges; what is culled is dashed."""
-        kept = {node.name for node in (plan.kept if plan else self.nodes)}
+        nodes = [verdict.node for verdict in plan.verdicts if verdict.kept] if plan else self.nodes
+        kept = {node.name for node in nodes}
         lines = ["digraph frame {", "  rankdir=LR; node [fontname=Helvetica]; edge [fontname=Helvetica fontsize=10]"]
         for node in self.nodes:
             style = "solid" if node.name in kept else "dashed"

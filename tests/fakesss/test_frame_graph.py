@@ -74,7 +74,7 @@ def test_a_choice_copies_nothing_and_can_be_asked_for(gpu: Gpu) -> None:
     assert len(gpu.pool.free[SPEC]) == 1
 
 
-def merging(*more: Pass) -> FrameGraph:
+def merging(*more: Pass | Choice) -> FrameGraph:
     """A pass `soften` whose reader `shade` can compute it in place."""
     soften = Pass("soften", nothing, {"soft": SPEC}, ("a_out",), in_place=lambda inputs: ({}, {}))
     shade = Pass("shade", nothing, {"shaded": SPEC}, ("soft",), merges=("soft",))
@@ -116,6 +116,14 @@ def test_a_mask_keeps_drawing_to_what_it_covers(gpu: Gpu) -> None:
     out = Run(FrameGraph(nodes).compile(["out"]), gpu, Recent(1))().values["out"]
     np.testing.assert_array_equal(out[:, :4], 1)
     np.testing.assert_array_equal(out[:, 4:], np.broadcast_to([0.25, 0, 0, 0], (4, 4, 4)))
+
+
+def test_the_drawing_shows_what_is_chosen_and_merged_as_kept() -> None:
+    graph = merging(Choice("either", "shaded", "it is cheaper", {"a_out": "it is dear"}))
+    drawn = graph.to_dot(graph.compile(["either"]))
+    for name, shape in (("soften", "box"), ("shade", "box"), ("either", "diamond")):
+        assert f'"{name}" [shape={shape} style=solid]' in drawn
+    assert '"a" -> "either" [label="a_out" style=dashed]' in drawn
 
 
 @pytest.mark.parametrize(
