@@ -20,6 +20,7 @@ from fakesss.colour import to_8bit
 from fakesss.direct_light import DirectLight
 from fakesss.frame import Run
 from fakesss.frame_graph import Plan
+from fakesss.gpu import renderer_facts
 from fakesss.mesh import Mesh
 from fakesss.occlusion import bake_occlusion
 from fakesss.pipeline import build
@@ -54,14 +55,13 @@ def bench(name: str, faces: Sequence[int], size: tuple[int, int] = SIZE, repeats
     renderer = shared_renderer()
     bar = tqdm(faces, unit="size", disable=None)
     rows = [row(renderer, Scene(object=f"{name}:{count}", size=size, supersampling=1), repeats) for count in bar]
-    return {"machine": machine(renderer), "rows": rows, "method": METHOD}
+    return {"machine": machine(), "rows": rows, "method": METHOD}
 
 
-def machine(renderer: Renderer) -> dict[str, Any]:
+def machine() -> dict[str, Any]:
     """What the figures are of."""
     return {
-        "gl_renderer": renderer.gpu.renderer,
-        "gl_version": renderer.gpu.version,
+        **renderer_facts(),
         "processor": platform.processor() or platform.machine(),
         "cores": os.cpu_count(),
         "python": platform.python_version(),

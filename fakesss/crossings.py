@@ -12,7 +12,7 @@ from fakesss.vertex_normals import face_normals
 Floats = NDArray[np.float64]
 
 STEP = 1e-5  # past a hit before looking for the next, in sphere radii: some 40 float32 steps at the surface
-MOST = 64  # hits of one ray that are followed
+MOST = 64  # hits of one ray that are followed, unless fewer are asked for
 
 
 @dataclass(frozen=True)
@@ -35,12 +35,12 @@ class Crossings:
         self.normals = face_normals(mesh.positions, mesh.faces)
         self.corner = mesh.positions[mesh.faces[:, 0]].astype(np.float64)
 
-    def __call__(self, origins: Floats, directions: Floats, reach: Floats | None = None) -> Hits:
-        """The first `MOST` hits of rays with these origins and unit directions (N, 3), no farther than `reach` (N,)."""
+    def __call__(self, origins: Floats, directions: Floats, reach: Floats | None = None, most: int = MOST) -> Hits:
+        """The first `most` hits of rays with these origins and unit directions (N, 3), no farther than `reach` (N,)."""
         rounds: list[tuple[Floats, NDArray[np.int8], NDArray[np.int32]]] = []
         start, going = np.zeros(len(origins)), np.arange(len(origins))
         left = np.full(len(origins), np.inf) if reach is None else reach
-        while len(going) and len(rounds) < MOST:
+        while len(going) and len(rounds) < most:
             begin, along = origins[going] + start[going, None] * directions[going], directions[going]
             face = self._caster.first_face(begin, along, (left - start)[going])
             hit = face != NOTHING

@@ -10,14 +10,12 @@ It is not the thickness along the view: it changes neither with the camera nor w
 only. Over a closed surface without clipping its mean is 4 V / S, of volume V and area S (Cauchy's mean chord).
 """
 
-import time
 from collections.abc import Callable
-from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
 
-from fakesss import cache
+from fakesss.baking import Baked, baked
 from fakesss.hemisphere import mean_over_hemisphere
 from fakesss.mesh import Mesh
 from fakesss.vertex_normals import face_normals
@@ -31,31 +29,10 @@ CLEARANCES = (5e-5, 5e-6, 5e-7)  # from the vertex to where its rays start, in s
 LONGEST = np.float32(4)  # sphere radii; two points of the object are at most 2 apart
 
 
-@dataclass(frozen=True, eq=False)
-class Baked:
-    """Local thickness of one mesh, and what it took to get it this time."""
-
-    values: Floats32  # (V,) sphere diameters, in 0..reach
-    rays: int  # asked for, per vertex
-    reach: float  # sphere diameters
-    rays_cast: int  # in all; 0 when the values came from the cache
-    seconds: float  # hierarchy and rays, or reading the cache
-    cached: bool
-
-
 def bake_local_thickness(mesh: Mesh, rays: int = 320, reach: float = 0.5) -> Baked:
-    """Local thickness of `mesh`, from the cache where it was baked before; `reach` in sphere diameters, above 0."""
-    started = time.perf_counter()
-    cast = 0
-
-    def make() -> cache.Arrays:
-        nonlocal cast
-        values, cast = cast_inwards(mesh, rays, reach)
-        return {"values": values}
-
-    key = {"version": VERSION, "mesh": mesh.sha256, "rays": rays, "reach": reach}
-    arrays, cached = cache.cached("local_thickness", key, {"values": (len(mesh.positions),)}, make)
-    return Baked(arrays["values"], rays, reach, cast, time.perf_counter() - started, cached)
+    """Local thickness of `mesh`, 0..`reach` in sphere diameters; from the cache where it was baked before."""
+    depends = {"version": VERSION, "reach": reach}
+    return baked("local_thickness", mesh, rays, depends, lambda: cast_inwards(mesh, rays, reach))
 
 
 def cast_inwards(mesh: Mesh, rays: int, reach: float) -> tuple[Floats32, int]:

@@ -3,13 +3,10 @@
 Gascons, *Fast simulation of translucent objects* (2011), section 3.1.
 """
 
-import time
-from dataclasses import dataclass
-
 import numpy as np
 from numpy.typing import NDArray
 
-from fakesss import cache
+from fakesss.baking import Baked, baked
 from fakesss.hemisphere import Sampling, mean_over_hemisphere
 from fakesss.mesh import Mesh
 
@@ -19,33 +16,13 @@ VERSION = 3  # raised whenever the values change, so that cached ones are made a
 CLEARANCE = 5e-4  # from the vertex to where its rays start, in sphere radii: clear of the triangles around it
 
 
-@dataclass(frozen=True, eq=False)
-class Baked:
-    """Occlusion of one mesh, and what it took to get it this time."""
-
-    values: Floats32  # (V,) in 0..1; 1 sees the whole hemisphere
-    rays: int  # asked for, per vertex
-    rays_cast: int  # in all; 0 when the values came from the cache
-    seconds: float  # hierarchy and rays, or reading the cache
-    cached: bool
-
-
 def bake_occlusion(mesh: Mesh, rays: int = 320, sampling: Sampling = "cosine") -> Baked:
-    """Ambient occlusion of `mesh`, from the cache where it was baked before.
+    """Ambient occlusion of `mesh`, 0..1 where 1 sees the whole hemisphere; from the cache where it was baked before.
 
     "cosine" weights each ray with the cosine to the normal, as irradiance does; "uniform" counts all alike.
     """
-    started = time.perf_counter()
-    cast = 0
-
-    def make() -> cache.Arrays:
-        nonlocal cast
-        values, cast = cast_rays(mesh, rays, sampling)
-        return {"values": values}
-
-    key = {"version": VERSION, "mesh": mesh.sha256, "rays": rays, "sampling": sampling}
-    arrays, cached = cache.cached("occlusion", key, {"values": (len(mesh.positions),)}, make)
-    return Baked(arrays["values"], rays, cast, time.perf_counter() - started, cached)
+    depends = {"version": VERSION, "sampling": sampling}
+    return baked("occlusion", mesh, rays, depends, lambda: cast_rays(mesh, rays, sampling))
 
 
 def ray_origins(mesh: Mesh) -> Floats32:

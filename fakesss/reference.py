@@ -9,15 +9,14 @@ import numpy as np
 from numpy.typing import NDArray
 
 from fakesss.camera import View
+from fakesss.crossings import Crossings
 from fakesss.mesh import Mesh, mesh_from_surface
-from fakesss.ray_casting import NOTHING, Caster
 from fakesss.solids import BOX_HALF, TORUS_RADII, sphere
-from fakesss.vertex_normals import face_normals, normalised
+from fakesss.vertex_normals import normalised
 
 Floats = NDArray[np.float64]
 Interval = tuple[Floats, Floats]
 
-STEP = 1e-5  # past a hit before looking for the next, in sphere radii: some 40 float32 steps at the surface
 ATTEMPTS = 4  # at a ray that slips between two triangles, each turned by about SLIP radians
 SLIP = 2e-6
 
@@ -49,10 +48,8 @@ class ExactInterval:
     """
 
     def __init__(self, mesh: Mesh) -> None:
-        self._caster = Caster(mesh)
+        self._crossings = Crossings(mesh)
         self._closed = mesh.watertight
-        self._corner = mesh.positions[mesh.faces[:, 0]].astype(np.float64)
-        self._normal = face_normals(mesh.positions, mesh.faces)
 
     def __call__(self, origins: Floats, directions: Floats) -> Interval:
         entry, leave, sound = self._cast(origins, directions)
@@ -68,23 +65,11 @@ class ExactInterval:
 
     def _cast(self, origins: Floats, directions: Floats) -> tuple[Floats, Floats, NDArray[np.bool_]]:
         """Entry, exit, and whether they face as they must on a closed mesh."""
-        entry, front = self._next(origins, directions, np.zeros(len(origins)))
-        leave, back = self._next(origins, directions, np.where(np.isnan(entry), 0, entry + STEP))
-        missed = np.isnan(entry)
-        leave[missed] = np.nan
-        return entry, leave, missed | ((front < 0) & (back > 0))
-
-    def _next(self, origins: Floats, directions: Floats, start: Floats) -> Interval:
-        """Distance to the first surface beyond `start`, and the cosine of its normal with the ray; NaN: none."""
-        begin = origins + start[:, None] * directions
-        face = self._caster.first_face(begin.astype(np.float32), directions.astype(np.float32))
-        hit = face != NOTHING
-        normal = self._normal[face]
-        cosine = (normal * directions).sum(axis=1)
-        ahead = ((self._corner[face] - begin) * normal).sum(axis=1)
-        # a triangle edge-on has no one distance; where the ray meets it is then as good as its corner
-        away = np.divide(ahead, cosine, out=np.zeros_like(ahead), where=np.abs(cosine) > 1e-9)
-        return np.where(hit, start + np.maximum(away, 0), np.nan), np.where(hit, cosine, np.nan)
+        hits = self._crossings(origins, directions, most=2)
+        absent = ((0, 0), (0, 2 - hits.distances.shape[1]))  # where no ray hits so often
+        entry, leave = np.pad(hits.distances, absent, constant_values=np.nan).T
+        front, back = np.pad(hits.sides, absent).T
+        return entry.copy(), leave.copy(), np.isnan(entry) | ((front < 0) & (back > 0))
 
 
 def sphere_interval(origins: Floats, directions: Floats, radius: float = 1.0) -> Interval:

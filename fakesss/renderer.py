@@ -11,9 +11,10 @@ from numpy.typing import NDArray
 
 from fakesss import gpu as opengl
 from fakesss.frame import Made, Outcome, Run
-from fakesss.frame_graph import FrameGraphError, Plan, TextureSpec
+from fakesss.frame_graph import FrameGraph, FrameGraphError, Plan, TextureSpec
 from fakesss.image_io import check_picture, write_image
 from fakesss.memory import peak_bytes, shadow_maps
+from fakesss.passes.mesh import mesh as mesh_of
 from fakesss.pipeline import NONE, build, samples_of
 from fakesss.problem import BadInput
 from fakesss.recent import Recent
@@ -87,7 +88,7 @@ class Renderer:
         forced: frozenset[str] = NONE,
     ) -> tuple[Plan, Outcome]:
         self._fit(scene, samples)
-        loaded = Run(build(scene).compile(("mesh",)), self.gpu, self.bakes)()
+        loaded = Run(FrameGraph([mesh_of(scene)]).compile(("mesh",)), self.gpu, self.bakes)()
         mesh = loaded.values["mesh"]
         solid = self.bakes.get(("solid", mesh.sha256), lambda: is_solid(mesh))
         plan = build(scene, samples, solid, forced).compile(targets)

@@ -42,6 +42,11 @@ def draw_mesh(frame: Frame, mesh: Mesh, view: View, program: Any, attributes: li
     vertices.release()
 
 
+def shows_front_faces(mesh: Mesh, view: View) -> bool:
+    """Whether `view` sees a closed surface whole and from outside: front faces before back faces everywhere."""
+    return mesh.watertight and not view.clips_sphere
+
+
 def normals(frame: Frame, view: View) -> Attribute:
     """Vertex normals in the eye frame."""
     mesh: Mesh = frame.inputs["mesh"]

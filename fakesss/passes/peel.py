@@ -3,7 +3,7 @@
 from fakesss.calls import Setting
 from fakesss.frame import Frame
 from fakesss.frame_graph import Pass, TextureSpec
-from fakesss.passes.geometry import Cull, draw_mesh
+from fakesss.passes.geometry import Cull, draw_mesh, shows_front_faces
 
 DEEPEST = 6  # layer of a bridged thickness: three stretches of matter in a solid
 
@@ -12,10 +12,9 @@ def peel(setting: Setting) -> Pass:
     """Reads `mesh` and `front`; writes `peeled` (depth of the second layer, 0 where there is none)."""
 
     def draw(frame: Frame) -> None:
+        front_faces = int(shows_front_faces(frame.inputs["mesh"], setting.view))
         published = int(setting.published)
-        step(
-            frame, setting, "front", "", BEFORE_FACES=faces_of_front(frame, setting), NEAREST=1, AS_PUBLISHED=published
-        )
+        step(frame, setting, "front", "", BEFORE_FACES=front_faces, NEAREST=1, AS_PUBLISHED=published)
 
     return Pass(
         "peel",
@@ -26,11 +25,6 @@ def peel(setting: Setting) -> Pass:
     )
 
 
-def faces_of_front(frame: Frame, setting: Setting) -> int:
-    """1 where the front layer is of front faces only: of a closed surface seen from outside; else 0, of either."""
-    return int(frame.inputs["mesh"].watertight and not setting.view.clips_sphere)
-
-
 def deeper(setting: Setting) -> list[Pass]:
     """One pass for each layer from the second on: writes `layer_2` and so on, negative where it is of a front face.
 
@@ -38,11 +32,12 @@ def deeper(setting: Setting) -> list[Pass]:
     """
 
     def one(number: int) -> Pass:
+        """The layer of this number."""
         before = "front" if number == 2 else f"layer_{number - 1}"
         faces: Cull = ("front" if number % 2 == 0 else "back") if setting.outside_only else ""
 
         def draw(frame: Frame) -> None:
-            known = faces_of_front(frame, setting) if number == 2 else 2
+            known = int(shows_front_faces(frame.inputs["mesh"], setting.view)) if number == 2 else 2
             step(frame, setting, before, faces, BEFORE_FACES=known, NEAREST=int(number == 2), SIGNED=1)
 
         return Pass(

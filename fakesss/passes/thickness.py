@@ -7,6 +7,7 @@ from fakesss.calls import Setting
 from fakesss.frame import Frame
 from fakesss.frame_graph import Pass, TextureSpec
 from fakesss.mesh import Mesh
+from fakesss.passes.geometry import shows_front_faces
 
 
 def thickness(setting: Setting) -> Pass:
@@ -34,6 +35,6 @@ def open_thickness(mesh: Mesh, setting: Setting) -> float:
     A closed surface that no clip plane cuts always has one, except where it is thinner than the peel can part: 0.
     Anything else follows the scene's stated policy.
     """
-    if mesh.watertight and not setting.view.clips_sphere:
+    if shows_front_faces(mesh, setting.view):
         return 0.0
     return {"thin": 0.0, "thick": 1.0}[setting.scene.open_surface]
