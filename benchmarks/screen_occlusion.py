@@ -54,6 +54,7 @@ def drawn(scene: Scene, samples: int) -> tuple[NDArray[np.float32], float]:
 @click.option("--object", "name", default="figure:60000", show_default=True)
 @click.option("--repeats", default=9, show_default=True)
 def main(name: str, repeats: int) -> None:
+    """Print time and error of screen-space samples and of as many rays from every covered pixel."""
     scene = Scene(object=name, supersampling=1).replace({"occlusion.method": "screen-space"})
     traced, covered = rays_from_pixels(scene)
     truth = traced(TRUTH)

@@ -91,6 +91,7 @@ def no_exposure(scene: Scene) -> str:
 
 
 def no_backlight(scene: Scene) -> str:
+    """Why `backlight_colour` is black, or nothing of it is shown."""
     return (
         no_exposure(scene)
         or when(scene.material.backlight == 0, "material.backlight is 0")
@@ -108,6 +109,7 @@ def no_thickness(scene: Scene) -> str:
 
 
 def no_ambient(scene: Scene) -> str:
+    """Why `ambient_colour` is black, or nothing of it is shown."""
     return (
         no_exposure(scene)
         or when(scene.material.ambient == 0, "material.ambient is 0")
@@ -117,6 +119,7 @@ def no_ambient(scene: Scene) -> str:
 
 
 def no_diffuse(scene: Scene) -> str:
+    """Why `diffuse_colour` is black for every light, or nothing of it is shown."""
     zero = scene.material.diffuse_contribution == 0
     return (
         no_exposure(scene)
@@ -127,6 +130,7 @@ def no_diffuse(scene: Scene) -> str:
 
 
 def no_specular(scene: Scene) -> str:
+    """Why `specular_colour` is black for every light, or nothing of it is shown."""
     material = scene.material
     return (
         no_exposure(scene)

@@ -28,7 +28,6 @@ MEND = "run `apt-get install libegl1 libgl1 libegl-mesa0 libgl1-mesa-dri` (Debia
 EXPLICIT_NAMES = {"libgl": "libGL.so.1", "libegl": "libEGL.so.1"}
 REFUSALS = ("create", "framebuffer is not complete")  # Mesa makes the texture and then cannot attach it
 UPLOADS_KEPT = 16  # buffers: a few meshes, so that a sweep uploads nothing twice
-
 DRAWN_KEPT = 1  # passes' outputs that the next picture may use again: large, so only the last
 
 

@@ -50,6 +50,7 @@ def assemble(name: str, defines: Mapping[str, int | float] = NOTHING, root: Path
     seen: set[str] = set()
 
     def append(file: str, included_from: str) -> None:
+        """The lines of a file and, in place, of those that it includes."""
         if file in seen:
             return
         seen.add(file)
