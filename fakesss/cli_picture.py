@@ -73,10 +73,14 @@ def explain(
 
     described = scene_named(scene, changes, size)
     if out:
-        inspect.draw(described, out, timed)
-        say(f"{out}: the frame graph")
+        from fakesss.graph_drawing import check_drawing, draw_graph  # loads matplotlib
+
+        check_drawing(out)
     plan = inspect.compiled(described)
     result = inspect.document(plan, described, timed)
+    if out:
+        draw_graph(plan, out, {entry["name"]: entry["gpu_ms"] for entry in result["passes"]})
+        say(f"{out}: the frame graph")
     if savings:
         result["savings"] = inspect.savings(described)
     if graph:

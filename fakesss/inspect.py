@@ -93,15 +93,6 @@ def graph(scene: Scene) -> str:
     return graph.to_dot(graph.compile((PICTURE,)))
 
 
-def draw(scene: Scene, path: str, timed: bool = False) -> None:
-    """Write the drawing of the scene's frame graph to a .svg, .pdf or .png file, with GPU times if `timed`."""
-    from fakesss.graph_drawing import check_drawing, draw_graph  # loads matplotlib
-
-    check_drawing(path)
-    drawn = timed_rendering(scene).passes if timed else []
-    draw_graph(compiled(scene), path, {entry["name"]: entry["gpu_ms"] for entry in drawn})
-
-
 def contact_sheet(scene: Scene) -> Float:
     """All of `fakesss.views` and the picture on one labelled sheet: (H, W, 3) linear RGB."""
     from fakesss.contact_sheet import layered  # loads matplotlib
