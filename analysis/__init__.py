@@ -7,16 +7,16 @@ from importlib import import_module
 from typing import Any
 
 STATISTICS = {
-    "Equivalence": "analysis.equivalence",
-    "Friedman": "analysis.friedman",
-    "IntraclassCorrelation": "analysis.agreement",
-    "KrippendorffAlpha": "analysis.agreement",
-    "MeanIntervals": "analysis.intervals",
-    "OneWayAnova": "analysis.anova",
-    "PairedContrasts": "analysis.contrasts",
-    "RepeatedMeasuresAnova": "analysis.anova",
-    "SignedRanks": "analysis.wilcoxon",
-    "TukeyHSD": "analysis.tukey",
+    "Equivalence": "analysis.statistics.equivalence",
+    "Friedman": "analysis.statistics.friedman",
+    "IntraclassCorrelation": "analysis.statistics.agreement",
+    "KrippendorffAlpha": "analysis.statistics.agreement",
+    "MeanIntervals": "analysis.statistics.intervals",
+    "OneWayAnova": "analysis.statistics.anova",
+    "PairedContrasts": "analysis.statistics.contrasts",
+    "RepeatedMeasuresAnova": "analysis.statistics.anova",
+    "SignedRanks": "analysis.statistics.wilcoxon",
+    "TukeyHSD": "analysis.statistics.tukey",
     "read_ratings": "analysis.ratings",
     "write_report": "analysis.report",
 }

@@ -5,12 +5,12 @@ from itertools import combinations
 import numpy as np
 import pandas as pd
 
-from analysis.agreement import IntraclassCorrelation, KrippendorffAlpha
 from analysis.labels import natural_order
 from analysis.ratings import is_check, is_repeat
 from analysis.sample import Sample
+from analysis.statistics.agreement import IntraclassCorrelation, KrippendorffAlpha
+from analysis.statistics.undefined import Undefined
 from analysis.study import StudyInfo
-from analysis.undefined import Undefined
 
 
 def rater_table(sample: Sample, study: StudyInfo) -> tuple[pd.DataFrame, list[str]]:

@@ -2,26 +2,22 @@
 
 import json
 import math
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
 import pandas as pd
 
-from analysis.figures import Drawing, comparison_figure, factor_figure, letters_missing
-from analysis.page import render_page
-from analysis.plan import AnalysisPlan, Mode
+from analysis.evidence import Progress, gather
+from analysis.figures.style import Drawing, letters_missing
+from analysis.page import render_page, sections_of
+from analysis.plan import AnalysisPlan
 from analysis.provenance import provenance
 from analysis.ratings import DEFAULT_SCALE, read_ratings
-from analysis.reliability import rater_table, retest_table
 from analysis.remarks import remarks
-from analysis.results import Analysed, analyse, anova_table, hsd_table, means_table, tukey_table
-from analysis.rows import Row, rows_of
 from analysis.sample import Sample, draw_sample
 from analysis.study import StudyInfo, from_ratings, read_manifest
 from fakesss.problem import BadInput
-
-Progress = Callable[[int, int, str], None]
 
 
 def write_report(
@@ -51,40 +47,16 @@ def write_report(
     refuse_strangers(study, frame, ratings)
     plan = plan or study.plan
     sample = draw_sample(frame[frame["question"].isin([q.name for q in study.questions])], plan, participants)
-    rows, notes = rows_of(study, plan, sample.ratings)
-    found = analyse_all(rows, sample, plan, progress)
-    main = found[: len(rows)]
-    raters, more = rater_table(sample, study)
-    retests = retest_table(sample.everything, study)
-    figures = factor_figure(study, main, plan.confidence), comparison_figure(study, main, plan.confidence)
-    drawings = [figure for figure in figures if figure is not None]
-    said = [*remarks(study, plan, sample, frame, main, [*notes, *more]), *letters_missing(drawings)]
-    tables = {
-        "anova": anova_table(found),
-        "tukey": tukey_table(found),
-        "hsd": hsd_table(found),
-        "means": means_table(found),
-        "agreement": raters,
-        "retest": retests,
-    }
+    evidence = gather(study, plan, sample, frame, progress)
+    sections = sections_of(evidence)
+    drawings = [drawing for section in sections for drawing in section.drawings]
+    notes = [*evidence.notes, *(sentence for section in sections for sentence in section.warnings)]
+    said = [*remarks(study, plan, sample, frame, evidence.main, notes), *letters_missing(drawings)]
+    tables = {name: table for section in sections for name, table in section.tables.items()}
     origin = provenance(ratings, frame, study, manifest)
     results = results_json(study, plan, sample, tables, said, origin)
-    page = render_page(study, plan, sample, found, raters, retests, said, drawings, origin)
-    save(out, page, results, tables, drawings)
+    save(out, render_page(evidence, sections, said, origin), results, tables, drawings)
     return results
-
-
-def analyse_all(rows: Sequence[Row], sample: Sample, plan: AnalysisPlan, progress: Progress | None) -> list[Analysed]:
-    """Every row in the mode the design calls for, then every row in the other."""
-    modes: tuple[Mode, Mode] = ("repeated", "independent")
-    jobs = [(row, mode) for mode in (modes if sample.mode == "repeated" else modes[::-1]) for row in rows]
-    tell = progress or (lambda done, total, what: None)
-    found = []
-    for done, (row, mode) in enumerate(jobs):
-        tell(done, len(jobs), row.title)
-        found.append(analyse(row, sample, plan, mode))
-    tell(len(jobs), len(jobs), "writing")
-    return found
 
 
 def results_json(

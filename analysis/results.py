@@ -6,16 +6,16 @@ from typing import Any
 
 import pandas as pd
 
-from analysis.anova import OneWayAnova, RepeatedMeasuresAnova
-from analysis.contrasts import PairedContrasts
-from analysis.friedman import Friedman
-from analysis.intervals import MeanIntervals
 from analysis.plan import AnalysisPlan, Mode
 from analysis.rows import Row
 from analysis.sample import Sample
-from analysis.tukey import TukeyHSD
-from analysis.undefined import Undefined
-from analysis.wilcoxon import SignedRanks
+from analysis.statistics.anova import OneWayAnova, RepeatedMeasuresAnova
+from analysis.statistics.contrasts import PairedContrasts
+from analysis.statistics.friedman import Friedman
+from analysis.statistics.intervals import MeanIntervals
+from analysis.statistics.tukey import TukeyHSD
+from analysis.statistics.undefined import Undefined
+from analysis.statistics.wilcoxon import SignedRanks
 from analysis.wording import thesis_verdict
 
 METHODS: dict[Mode, str] = {"repeated": "repeated measures", "independent": "independent samples"}

@@ -9,7 +9,7 @@ import pandas as pd
 from analysis.labels import natural_order
 from analysis.plan import BEST, AnalysisPlan, Comparison
 from analysis.study import Factor, Picture, StudyInfo
-from analysis.wording import sentence_case
+from analysis.wording import level_text, sentence_case
 from fakesss.problem import nearest
 
 Kind = Literal["factor", "comparison", "all"]
@@ -77,15 +77,6 @@ def factor_row(study: StudyInfo, factor: Factor, question: str, rated: set[str])
 def in_row(picture: Picture, factor: Factor, value: Any) -> bool:
     """Whether the picture shows that level in the factor's row."""
     return picture.role == "factor" and factor.name in picture.rows and dict(picture.levels).get(factor.name) == value
-
-
-def level_text(value: Any) -> str:
-    """25, 1.2, true, (1, 0, 0): as the study writes it."""
-    if isinstance(value, bool):
-        return str(value).lower()
-    if isinstance(value, list | tuple):
-        return "(" + ", ".join(level_text(part) for part in value) + ")"
-    return f"{value:.12g}" if isinstance(value, float) else str(value)
 
 
 def declared(study: StudyInfo, plan: AnalysisPlan, questions: list[str], rated: set[str]) -> Iterator[Comparison]:

@@ -1,6 +1,7 @@
 """Numbers as the thesis prints them, and as the APA's manual does."""
 
 import math
+from typing import Any
 
 
 def thesis_p(p: float) -> str:
@@ -62,3 +63,12 @@ def sentence_case(text: str) -> str:
 def counted(n: int, noun: str) -> str:
     """1 participant, 2 participants."""
     return f"{n} {noun}" if n == 1 else f"{n} {noun}s"
+
+
+def level_text(value: Any) -> str:
+    """25, 1.2, true, (1, 0, 0): as the study writes it."""
+    if isinstance(value, bool):
+        return str(value).lower()
+    if isinstance(value, list | tuple):
+        return "(" + ", ".join(level_text(part) for part in value) + ")"
+    return f"{value:.12g}" if isinstance(value, float) else str(value)

@@ -8,7 +8,7 @@ import pandas as pd
 import pytest
 
 from analysis import Equivalence, IntraclassCorrelation, KrippendorffAlpha
-from analysis.undefined import Undefined
+from analysis.statistics.undefined import Undefined
 from fakesss.problem import BadInput
 
 DATA = Path(__file__).parents[1] / "data" / "statistics"

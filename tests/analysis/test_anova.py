@@ -11,8 +11,8 @@ from hypothesis import HealthCheck, assume, given, settings
 from hypothesis import strategies as st
 
 from analysis import OneWayAnova, RepeatedMeasuresAnova
-from analysis.anova import effect_sizes, sphericity
-from analysis.undefined import Undefined
+from analysis.statistics.anova import effect_sizes, sphericity
+from analysis.statistics.undefined import Undefined
 
 DATA = Path(__file__).parents[1] / "data" / "statistics"
 NIST = Path(scipy.stats.__file__).parent / "tests" / "data" / "nist_anova"

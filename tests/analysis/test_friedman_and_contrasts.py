@@ -9,7 +9,7 @@ import pytest
 from scipy import stats
 
 from analysis import Friedman, MeanIntervals, PairedContrasts, SignedRanks
-from analysis.effect_size import eta_squared_interval
+from analysis.statistics.effect_size import eta_squared_interval
 
 DATA = Path(__file__).parents[1] / "data" / "statistics"
 R = json.loads((DATA / "effectsize_tost_padjust_R.json").read_text())

@@ -9,8 +9,8 @@ import pingouin
 from pandas.errors import Pandas4Warning
 from scipy import stats
 
-from analysis.effect_size import eta_squared_interval
-from analysis.undefined import Undefined, complete_table, groups_of, residuals
+from analysis.statistics.effect_size import eta_squared_interval
+from analysis.statistics.undefined import Undefined, complete_table, groups_of, residuals
 
 EFFECT_LEVEL = 0.90  # the interval that excludes 0 exactly when a one-sided F test at .05 is significant
 ROUNDING = 1e-12  # a residual this small against the total is what float64 leaves of an exact zero
@@ -22,7 +22,7 @@ class OneWayAnova:
 
     Returns one row: `F, df1, df2, p, ss_between, ss_within, ms_within, eta_squared, ci_low, ci_high` (90% interval of
     eta squared), `n` (ratings), `k` (levels). Agrees with R `summary(aov(value ~ group))`. Raises `Undefined` with a
-    sentence where F has no value (see `analysis.undefined.groups_of`).
+    sentence where F has no value (see `analysis.statistics.undefined.groups_of`).
     """
 
     value: str

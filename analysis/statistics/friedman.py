@@ -6,7 +6,7 @@ import numpy as np
 import pandas as pd
 from scipy import stats
 
-from analysis.undefined import Undefined, complete_table
+from analysis.statistics.undefined import Undefined, complete_table
 
 
 @dataclass(frozen=True)

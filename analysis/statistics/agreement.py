@@ -11,7 +11,7 @@ import pandas as pd
 import pingouin
 from pandas.errors import Pandas4Warning
 
-from analysis.undefined import Undefined, complete_table, require_columns
+from analysis.statistics.undefined import Undefined, complete_table, require_columns
 
 
 @dataclass(frozen=True)

@@ -5,7 +5,7 @@ from dataclasses import dataclass
 import pandas as pd
 from scipy import stats
 
-from analysis.undefined import Undefined, complete_table
+from analysis.statistics.undefined import Undefined, complete_table
 
 
 @dataclass(frozen=True)

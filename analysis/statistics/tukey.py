@@ -8,8 +8,8 @@ import numpy as np
 import pandas as pd
 from scipy import stats
 
-from analysis.anova import OneWayAnova, RepeatedMeasuresAnova
-from analysis.undefined import complete_table, groups_of
+from analysis.statistics.anova import OneWayAnova, RepeatedMeasuresAnova
+from analysis.statistics.undefined import complete_table, groups_of
 
 P_FLOOR = 1e-10  # scipy's studentized range is accurate to about 1e-14 absolutely: smaller p values are bounds
 

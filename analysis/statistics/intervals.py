@@ -6,7 +6,7 @@ import numpy as np
 import pandas as pd
 from scipy import stats
 
-from analysis.undefined import complete_table, require_columns
+from analysis.statistics.undefined import complete_table, require_columns
 
 
 @dataclass(frozen=True)

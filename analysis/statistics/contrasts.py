@@ -8,7 +8,7 @@ import pandas as pd
 from scipy import stats
 from statsmodels.stats.multitest import multipletests
 
-from analysis.undefined import complete_table
+from analysis.statistics.undefined import complete_table
 
 
 @dataclass(frozen=True)

@@ -9,8 +9,9 @@ from scipy.stats import ncf
 def eta_squared_interval(eta_squared: float, df1: float, df2: float, level: float = 0.90) -> tuple[float, float]:
     """Interval of (partial) eta squared: the noncentralities at which the observed F is at the tail quantiles.
 
-    Agrees with R effectsize::F_to_eta2(F, df1, df2, ci = level, alternative = "two.sided"). Not for generalized eta
-    squared, which F does not determine (see `analysis.anova.effect_sizes`). Steiger (2004), Psych. Methods 9.
+    Agrees with R effectsize::F_to_eta2(F, df1, df2, ci = level, alternative = "two.sided"). Not for generalized
+    eta squared, which F does not determine (see `analysis.statistics.anova.effect_sizes`). Steiger (2004), Psych.
+    Methods 9.
     """
     if eta_squared >= 1:
         return (1.0, 1.0)

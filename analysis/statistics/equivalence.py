@@ -8,7 +8,7 @@ import pandas as pd
 from scipy import stats
 from statsmodels.stats.weightstats import ttost_paired
 
-from analysis.undefined import Undefined, complete_table
+from analysis.statistics.undefined import Undefined, complete_table
 from fakesss.problem import BadInput
 
 VERDICTS = {(True, False): "different", (False, True): "equivalent", (True, True): "both", (False, False): "undecided"}

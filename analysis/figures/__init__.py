@@ -1,0 +1,1 @@
+"""Plots: what is analysed, drawn for page and paper as SVG and PNG."""
