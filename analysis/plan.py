@@ -1,5 +1,6 @@
 """What will be tested, written before the data: the `[analysis]` table of study.toml."""
 
+import math
 from collections.abc import Mapping
 from typing import Annotated, Any, Literal
 
@@ -10,6 +11,7 @@ from fakesss.problem import BadInput, Strict, nearest, validated
 Mode = Literal["repeated", "independent"]
 Share = Annotated[float, Field(gt=0, le=1)]
 Level = Annotated[float, Field(gt=0, lt=1)]
+Margin = Annotated[float, Field(gt=0, allow_inf_nan=False)]
 BEST = "best"
 
 
@@ -45,6 +47,40 @@ class Comparison(Strict):
         return self
 
 
+class PlannedContrast(Strict):
+    """A weighted sum of pictures' ratings on one question, tested within people against 0."""
+
+    name: Annotated[str, Field(min_length=1)] = Field(description="heads the table and the sentence")
+    question: str = Field(description="the [[question]] whose ratings are combined")
+    weights: Annotated[dict[str, Annotated[float, Field(allow_inf_nan=False)]], Field(min_length=2)] = Field(
+        description="stimulus id -> weight; the weights add up to 0"
+    )
+
+    @model_validator(mode="after")
+    def a_contrast(self) -> "PlannedContrast":
+        """Weights that do not add up to 0 test a mean, not a difference."""
+        total = math.fsum(self.weights.values())
+        largest = max(map(abs, self.weights.values()))
+        if largest == 0 or abs(total) > 1e-9 * largest:
+            raise ValueError(
+                f'contrast "{self.name}": its weights add up to {total:g}; they must add up to 0, not all 0'
+            )
+        return self
+
+
+class EquivalencePlan(Strict):
+    """Which difference is too small to matter. Without it nothing is called equivalent."""
+
+    margin: Margin | dict[str, Margin] = Field(
+        description="the smallest difference that matters, in steps of the scale: one for all questions or one for each"
+    )
+    alpha: Level = Field(0.05, description="level of each one-sided test; the interval drawn is at 1 - 2 alpha")
+
+    def margin_of(self, question: str) -> float | None:
+        """The margin of a question; None where it has none."""
+        return self.margin.get(question) if isinstance(self.margin, dict) else self.margin
+
+
 class AnalysisPlan(Strict):
     """The declared analysis of a study."""
 
@@ -54,16 +90,31 @@ class AnalysisPlan(Strict):
     )
     confidence: Level = Field(0.95, description="confidence level of intervals of means and differences")
     completers_only: bool = Field(True, description="analyse only participants who rated everything they were shown")
+    tests: tuple[Literal["ranks", "ordinal", "mixed"], ...] = Field(
+        ("ranks", "ordinal", "mixed"), description="what is computed beside the analysis of variance"
+    )
+    contrasts: Literal["all", "reference", "neighbours"] = Field(
+        "all", description="which pairs of levels are compared by paired tests: all, each with the first, or in a chain"
+    )
+    family: Literal["all", "question", "factor"] = Field(
+        "all", description="tests whose p values are adjusted together: all, those of a question, or those of a factor"
+    )
+    adjust: Literal["none", "holm", "fdr"] = Field(
+        "holm", description="the adjusted p that decides: none, Holm, or Benjamini-Hochberg"
+    )
+    equivalence: EquivalencePlan | None = Field(None, description="the margin of equivalence; there is no default")
     exclude: Exclusions = Field(Exclusions(), description="rules for leaving participants out")
     comparison: tuple[Comparison, ...] = Field((), description="pictures compared beside the factors' rows")
+    contrast: tuple[PlannedContrast, ...] = Field((), description="planned contrasts of pictures")
 
     @model_validator(mode="after")
     def named_once(self) -> "AnalysisPlan":
-        """Two comparisons of one name and question could not be told apart in the tables."""
-        names = [(entry.name, entry.question) for entry in self.comparison]
-        twice = next((pair for pair in names if names.count(pair) > 1), None)
-        if twice is not None:
-            raise ValueError(f'comparison "{twice[0]}" of question "{twice[1]}" stands twice; rename one')
+        """Two entries of one name and question could not be told apart in the tables."""
+        for kind, entries in (("comparison", self.comparison), ("contrast", self.contrast)):
+            names = [(entry.name, entry.question) for entry in entries]
+            twice = next((pair for pair in names if names.count(pair) > 1), None)
+            if twice is not None:
+                raise ValueError(f'{kind} "{twice[0]}" of question "{twice[1]}" stands twice; rename one')
         return self
 
 
@@ -78,10 +129,13 @@ def check_analysis(study_table: Mapping[str, Any], source: str) -> AnalysisPlan:
         raise BadInput(f"{source}: analysis: must be a table; write [analysis]")
     plan = validated(AnalysisPlan, table, f"{source}: [analysis]")
     asked = [str(entry["name"]) for entry in study_table.get("question", []) if "name" in entry]
-    for entry in plan.comparison:
-        if asked and entry.question not in asked:
+    named = [(f'comparison "{entry.name}"', entry.question) for entry in plan.comparison]
+    named += [(f'contrast "{entry.name}"', entry.question) for entry in plan.contrast]
+    if plan.equivalence is not None and isinstance(plan.equivalence.margin, dict):
+        named += [("equivalence margin", question) for question in plan.equivalence.margin]
+    for where, question in named:
+        if asked and question not in asked:
             raise BadInput(
-                f'{source}: [analysis] comparison "{entry.name}": question "{entry.question}" is not asked; '
-                f"{nearest(entry.question, asked)}"
+                f'{source}: [analysis] {where}: question "{question}" is not asked; {nearest(question, asked)}'
             )
     return plan

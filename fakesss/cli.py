@@ -1,18 +1,21 @@
 """The `fakesss` command: composes the four packages. Each command imports what it needs when it runs.
 
-The commands themselves stand in `cli_study`, `cli_picture` and `cli_measure`.
+The commands themselves stand in `cli_study`, `cli_analysis`, `cli_picture` and `cli_measure`.
 """
 
 import json
 import sys
 from collections.abc import Mapping
-from typing import Any
+from pathlib import Path
+from typing import Any, Literal
 
 import click
 
 from fakesss import __version__
 from fakesss.problem import BadInput
 
+Mode = Literal["live", "pilot", "simulated"]
+STUDY = click.argument("study", type=click.Path(path_type=Path))
 AS_JSON = click.option("--json", "as_json", is_flag=True, help="One JSON document on standard output.")
 
 
@@ -27,6 +30,7 @@ def commands() -> None:
 
 def main() -> None:
     """Runs the command; bad input is one sentence on standard error and exit code 2."""
+    import fakesss.cli_analysis
     import fakesss.cli_measure
     import fakesss.cli_picture
     import fakesss.cli_study  # noqa: F401  (all add their commands)

@@ -7,10 +7,11 @@ from pathlib import Path
 
 import pytest
 
+import fakesss.cli_analysis
 import fakesss.cli_measure
 import fakesss.cli_picture
 import fakesss.cli_study  # noqa: F401  (all add their commands)
-from analysis.plan import AnalysisPlan, Comparison, Exclusions
+from analysis.plan import AnalysisPlan, Comparison, EquivalencePlan, Exclusions, PlannedContrast
 from fakesss.cli import commands
 from fakesss.pipeline import build
 from fakesss.scene import Scene, scene_paths
@@ -30,6 +31,7 @@ DOCUMENTED = [
     ("study", [*Study.model_fields, *Factor.model_fields, *Design.model_fields, *Compare.model_fields]),
     ("survey", list(RATINGS)),
     ("statistics", [*AnalysisPlan.model_fields, *Comparison.model_fields, *Exclusions.model_fields]),
+    ("statistics", [*EquivalencePlan.model_fields, *PlannedContrast.model_fields]),
     ("objects", list(names())),
     ("technique", [node.name for node in build(Scene()).nodes]),
 ]
