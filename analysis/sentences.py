@@ -66,9 +66,11 @@ def effect_sentence(each: Analysed, question: Question, plan: AnalysisPlan) -> s
     at = [f"{mean:.2f} at {label}" for mean, label in zip(table["mean"], table["label"], strict=True)]
     head = f"{direction(each, table)}: {joined(at)}." if each.row.kind == "factor" else picture_head(each, top, bottom)
     low, high = pair_interval(each, top["level"], bottom["level"])
-    what = "steps" if question.scale <= 11 else "points"
+    what = "points"
+    if question.scale is not None:
+        what = f"{'steps' if question.scale <= 11 else 'points'} of the {question.scale}-point scale"
     return (
-        f"{head} Highest less lowest: {gap(each):.2f} {what} of the {question.scale}-point scale "
+        f"{head} Highest less lowest: {gap(each):.2f} {what} "
         f"({plan.confidence:.0%} CI {signed(low)} to {signed(high)})."
     )
 

@@ -23,11 +23,11 @@ class Factor:
 
 @dataclass(frozen=True)
 class Question:
-    """What was asked of every picture; answers are 1..scale."""
+    """What was asked of every picture; answers are 1..scale, or any number where `scale` is None."""
 
     name: str
     text: str = ""
-    scale: int = DEFAULT_SCALE
+    scale: int | None = DEFAULT_SCALE
     low: str = ""
     high: str = ""
 
@@ -119,7 +119,7 @@ def read_picture(entry: dict[str, Any], folder: Path) -> Picture:
     )
 
 
-def from_ratings(ratings: pd.DataFrame, title: str, scale: int) -> StudyInfo:
+def from_ratings(ratings: pd.DataFrame, title: str, scale: int | None) -> StudyInfo:
     """A study known by its ratings alone: no factors, every picture compared with every other."""
     return StudyInfo(
         title=title,

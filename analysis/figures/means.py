@@ -122,8 +122,9 @@ def draw_answers(axes: Axes, each: Analysed, codes: list[object]) -> None:
 
 def label_scale(axes: Axes, question: Question, named: bool) -> None:
     """The whole scale, its ends named once a row."""
-    axes.set_ylim(0.6, question.scale + 0.4)
-    if question.scale <= 11:
+    if question.scale is not None:
+        axes.set_ylim(0.6, question.scale + 0.4)
+    if question.scale is not None and question.scale <= 11:
         axes.set_yticks(range(1, question.scale + 1))
     axes.grid(axis="y", color="#eceef1", linewidth=0.8, zorder=0)
     axes.set_axisbelow(True)
@@ -134,5 +135,7 @@ def label_scale(axes: Axes, question: Question, named: bool) -> None:
 
 def answer_scale(question: Question) -> str:
     """What the ends of the axis mean, for captions."""
+    if question.scale is None:
+        return ""
     named = question.low and question.high
     return f"1 {question.low}, {question.scale} {question.high}. " if named else f"Scale 1 to {question.scale}. "
