@@ -1,14 +1,17 @@
 """Paired contrasts between all levels of one factor, adjusted for their number."""
 
 from dataclasses import dataclass
-from itertools import combinations
 
 import numpy as np
+import numpy.typing as npt
 import pandas as pd
 from scipy import stats
 from statsmodels.stats.multitest import multipletests
 
-from analysis.statistics.undefined import complete_table
+from analysis.statistics.undefined import Floats, complete_table
+
+AT_ONCE = 512
+Indices = npt.NDArray[np.intp]
 
 
 @dataclass(frozen=True)
@@ -29,21 +32,38 @@ class PairedContrasts:
     def __call__(self, frame: pd.DataFrame) -> pd.DataFrame:
         """The table for a long `frame`, one row per participant and level."""
         wide, _ = complete_table(frame, self.value, self.within, self.subject)
-        table = pd.DataFrame([self.pair(a, b, wide[a] - wide[b]) for a, b in combinations(wide.columns, 2)])
-        tested = table["p"].notna()
+        first, second = np.triu_indices(wide.shape[1], 1)
+        names = wide.columns.to_numpy(dtype=object)
+        table = pd.DataFrame({"a": names[first], "b": names[second], **self.tests(wide.to_numpy(), first, second)})
         table["p_holm"] = np.nan
+        tested = table["p"].notna()
         if tested.any():
             table.loc[tested, "p_holm"] = multipletests(table.loc[tested, "p"], method="holm")[1]
         return table[["a", "b", "difference", "ci_low", "ci_high", "t", "df", "p", "p_holm", "d_z", "n"]]
 
-    def pair(self, a: object, b: object, difference: "pd.Series[float]") -> dict[str, object]:
-        """One pair, not yet adjusted."""
-        n = len(difference)
-        mean, row = float(difference.mean()), {"a": a, "b": b, "df": n - 1, "n": n}
-        if np.ptp(difference.to_numpy()) == 0:
-            nothing = dict.fromkeys(("t", "p", "d_z"), np.nan)
-            return {**row, **nothing, "difference": mean, "ci_low": mean, "ci_high": mean}
-        found = stats.ttest_1samp(difference, 0.0)
+    def tests(self, wide: Floats, first: Indices, second: Indices) -> dict[str, Floats]:
+        """Columns of the t tests of the pairs of columns (`first`, `second`) of a subjects x levels table."""
+        # a column for each pair, few at once: the differences of all would be many times as large as the ratings
+        pieces = -(-len(first) // AT_ONCE)
+        parts = [
+            self.tests_of(wide[:, a] - wide[:, b])
+            for a, b in zip(np.array_split(first, pieces), np.array_split(second, pieces), strict=True)
+        ]
+        return {name: np.concatenate([part[name] for part in parts]) for name in parts[0]}
+
+    def tests_of(self, differences: Floats) -> dict[str, Floats]:
+        """One-sample t tests of each column against 0, not yet adjusted."""
+        mean, n = differences.mean(axis=0), len(differences)
+        equal = np.ptp(differences, axis=0) == 0
+        # a column without spread has no test; any spread keeps the library from warning of it
+        varied = np.where(equal, np.arange(n)[:, None], differences) if equal.any() else differences
+        found = stats.ttest_1samp(varied, 0.0, axis=0)
         interval = found.confidence_interval(self.confidence)
-        row |= {"difference": mean, "ci_low": float(interval.low), "ci_high": float(interval.high)}
-        return {**row, "t": float(found.statistic), "p": float(found.pvalue), "d_z": mean / float(difference.std())}
+        d_z = mean / varied.std(axis=0, ddof=1)
+        undefined = {"t": found.statistic, "p": found.pvalue, "d_z": d_z}
+        limits = {"ci_low": interval.low, "ci_high": interval.high}
+        return (
+            {"difference": mean, "df": np.full(len(mean), n - 1), "n": np.full(len(mean), n)}
+            | {name: np.where(equal, np.nan, column) for name, column in undefined.items()}
+            | {name: np.where(equal, mean, column) for name, column in limits.items()}
+        )
