@@ -74,7 +74,9 @@ class EquivalencePlan(Strict):
     margin: Margin | dict[str, Margin] = Field(
         description="the smallest difference that matters, in steps of the scale: one for all questions or one for each"
     )
-    alpha: Level = Field(0.05, description="level of each one-sided test; the interval drawn is at 1 - 2 alpha")
+    alpha: Annotated[float, Field(gt=0, lt=0.5)] = Field(
+        0.05, description="level of each one-sided test, below 0.5; the interval drawn is at 1 - 2 alpha"
+    )
 
     def margin_of(self, question: str) -> float | None:
         """The margin of a question; None where it has none."""
