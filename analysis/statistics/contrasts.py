@@ -1,4 +1,4 @@
-"""Paired contrasts between all levels of one factor, adjusted for their number."""
+"""Paired contrasts between levels of one factor, adjusted for their number."""
 
 from dataclasses import dataclass
 
@@ -16,8 +16,10 @@ Indices = npt.NDArray[np.intp]
 
 @dataclass(frozen=True)
 class PairedContrasts:
-    """Paired t tests between all pairs of levels with Holm's adjustment.
+    """Paired t tests between pairs of levels with Holm's adjustment.
 
+    `pairs`: "all" of them, each level with the first ("reference"; the other is subtracted from the first), or
+    "neighbours", a chain in the order of the levels; only pairs that are tested are counted in the adjustment.
     Returns a row per pair: `a, b, difference` (mean of a less mean of b), `ci_low, ci_high` (unadjusted), `t, df, p,
     p_holm, d_z` (mean difference over the standard deviation of differences), `n`. A pair whose differences are all
     equal has NaN for `t, p, p_holm, d_z` and is not counted in the adjustment. Agrees with R `pairwise.t.test(paired =
@@ -28,6 +30,7 @@ class PairedContrasts:
     within: str
     subject: str
     confidence: float = 0.95
+    pairs: Literal["all", "reference", "neighbours"] = "all"
 
     def __call__(self, frame: pd.DataFrame) -> pd.DataFrame:
         """The table for a long `frame`, one row per participant and level."""

@@ -2,6 +2,7 @@
 
 import json
 from pathlib import Path
+from typing import Literal
 
 import numpy as np
 import pandas as pd
@@ -66,6 +67,19 @@ def test_contrasts_are_paired_t_tests_with_holm() -> None:
         assert row["d_z"] == pytest.approx(found.statistic / np.sqrt(22))
     smallest, middle, largest = table.sort_values("p")["p"]
     assert sorted(table["p_holm"]) == pytest.approx([3 * smallest, 2 * middle, max(2 * middle, largest)])
+
+
+@pytest.mark.parametrize(("pairs", "chosen"), [("reference", ["ab", "ac", "ad"]), ("neighbours", ["ab", "bc", "cd"])])
+def test_fewer_pairs_are_adjusted_for_fewer(pairs: Literal["reference", "neighbours"], chosen: list[str]) -> None:
+    """The declared pairs alone, with the t tests that all pairs have; Holm's first factor is their number."""
+    ratings = np.random.default_rng(5).integers(1, 8, (9, 4))
+    cells = [(who, level, value) for who, row in enumerate(ratings) for level, value in zip("abcd", row, strict=True)]
+    frame = pd.DataFrame(cells, columns=["subject", "condition", "value"])
+    every = PairedContrasts(**COLUMNS)(frame).set_index(["a", "b"])
+    table = PairedContrasts(**COLUMNS, pairs=pairs)(frame).set_index(["a", "b"])
+    assert ["".join(pair) for pair in table.index] == chosen
+    assert list(table["p"]) == list(every.loc[table.index, "p"])
+    assert table["p_holm"].min() == pytest.approx(min(1, 3 * table["p"].min()))
 
 
 def test_equal_differences_have_no_t() -> None:
