@@ -1,36 +1,16 @@
 """Ratings from a CSV file, one row per rating: checked line by line, the latest revision kept, ready for statistics."""
 
-import csv
 from collections.abc import Mapping
 from pathlib import Path
 
 import numpy as np
 import pandas as pd
 
+from analysis.columns import LABELLED, read_cells
 from analysis.labels import natural_key
-from fakesss.problem import BadInput, nearest
+from fakesss.problem import BadInput
 
-REQUIRED = ("participant", "stimulus", "question", "rating")
-OPTIONAL = (
-    "session",
-    "started_at",
-    "mode",
-    "trial",
-    "presentation",
-    "revision",
-    "repeat_of",
-    "check_expected",
-    "check_passed",
-    "rt_ms",
-    "answered_at",
-)
-# What other programs and the thesis-shaped files call the same column; the first one found in the file counts.
-ALIASES = {
-    "participant": ("participant", "participant_id", "subject", "subject_id", "rater", "person"),
-    "stimulus": ("stimulus", "stimulus_id", "image", "picture", "item"),
-    "question": ("question", "scale", "attribute", "dimension"),
-    "rating": ("rating", "response", "score", "answer"),
-}
+MEASURED = ("rt_ms", "focus_lost_ms")
 LABELS = ("participant", "session", "stimulus", "question", "repeat_of")
 GUARD = r"^'(?=[=+\-@\t\r])"  # the export's apostrophe before what a spreadsheet would run as a formula
 DEFAULT_SCALE = 7
@@ -38,21 +18,24 @@ MODES = ("live", "simulated", "pilot")
 
 
 def read_ratings(
-    path: str | Path, columns: Mapping[str, str] | None = None, scale: int | Mapping[str, int] | None = DEFAULT_SCALE
+    path: str | Path,
+    columns: Mapping[str, str] | None = None,
+    scale: int | Mapping[str, int | None] | None = DEFAULT_SCALE,
+    *,
+    wide: str | None = None,
+    question: str | None = None,
 ) -> pd.DataFrame:
     """The ratings of one mode in `path`, sorted by participant, stimulus and question (natural order).
 
-    `columns` maps our names to the file's (`{"stimulus": "photo"}`); the aliases in `ALIASES` need no mapping. `scale`
-    is the highest answer, for all questions or for each; None allows any finite number. Returns `participant,
-    stimulus, question` (text), `rating` (float, NaN where the file has an empty cell) and those of `OPTIONAL` that the
-    file has (text; numbers for `rt_ms`). A person's sessions stay apart, in the order of their start. Raises `BadInput`
-    with the line number of the first bad row.
+    `columns` maps our names to the file's (`{"stimulus": "photo"}`); the aliases in `analysis.columns.ALIASES` need no
+    mapping. `scale` is the highest answer, for all questions or for each; None allows any finite number. `wide` and
+    `question` as in `analysis.columns.read_cells`. Returns `participant, stimulus, question` (text), `rating` (float,
+    NaN where the file has an empty cell) and those of `analysis.columns.OPTIONAL` that the file has (text; numbers for
+    `rt_ms` and `focus_lost_ms`). A person's sessions stay apart, in the order of their start. Raises `BadInput` with
+    the line number of the first bad row.
     """
     path = Path(path)
-    header = read_header(path)
-    chosen = choose_columns(header, columns or {}, path)
-    frame = pd.read_csv(path, dtype=str, keep_default_na=False, usecols=list(chosen.values()), encoding="utf-8-sig")
-    frame = frame.rename(columns={name: ours for ours, name in chosen.items()})
+    frame = read_cells(path, columns or {}, wide, question)
     if frame.empty:
         raise BadInput(f"{path}: has a header but no ratings; export again after people have answered")
     for name in (label for label in LABELS if label in frame):
@@ -60,51 +43,14 @@ def read_ratings(
     refuse_empty_labels(frame, path)
     frame = of_one_mode(frame).copy()
     frame["rating"] = numeric_ratings(frame, scale, path)
-    if "rt_ms" in frame:
-        frame["rt_ms"] = pd.to_numeric(frame["rt_ms"], errors="coerce")
+    for name in (measured for measured in MEASURED if measured in frame):
+        frame[name] = pd.to_numeric(frame[name], errors="coerce")
     frame = latest_revision(frame)
     refuse_duplicates(frame, path)
     if "started_at" in frame:
         frame = frame.sort_values("started_at", kind="stable")
     order = [c for c in ("participant", "session", "stimulus", "question", "trial", "presentation") if c in frame]
     return frame.sort_values(order, key=ranks, kind="stable").reset_index(drop=True)
-
-
-def read_header(path: Path) -> list[str]:
-    """The column names of a CSV file, or `BadInput` when it cannot be read as one."""
-    try:
-        with path.open(newline="", encoding="utf-8-sig") as file:
-            header = next(csv.reader(file), [])
-    except FileNotFoundError:
-        raise BadInput(f"{path}: no such file; check the path") from None
-    except (OSError, UnicodeDecodeError, csv.Error) as error:
-        raise BadInput(f"{path}: cannot be read ({error}); it must be a CSV file in UTF-8") from None
-    if not any(name.strip() for name in header):
-        raise BadInput(f"{path}: is empty; it needs a header line with {', '.join(REQUIRED)}")
-    twice = next((name for name in header if header.count(name) > 1), None)
-    if twice is not None:
-        raise BadInput(f'{path}: two columns are called "{twice}"; rename one')
-    return header
-
-
-def choose_columns(header: list[str], columns: Mapping[str, str], path: Path) -> dict[str, str]:
-    """Our name -> the file's name, for every column that is there; `BadInput` when a required one is not."""
-    by_lower = {name.strip().lower(): name for name in reversed(header)}
-    chosen: dict[str, str] = {}
-    for ours, theirs in columns.items():
-        if ours not in (*REQUIRED, *OPTIONAL):
-            raise BadInput(f'columns: "{ours}" is no column of ratings; {nearest(ours, (*REQUIRED, *OPTIONAL))}')
-        if theirs not in header:
-            raise BadInput(f'{path}: no column "{theirs}" (wanted as {ours}); {nearest(theirs, header)}')
-        chosen[ours] = theirs
-    for ours in (*REQUIRED, *OPTIONAL):
-        found = next((by_lower[alias] for alias in ALIASES.get(ours, (ours,)) if alias in by_lower), None)
-        if ours not in chosen and found is not None and found not in chosen.values():
-            chosen[ours] = found
-    missing = next((ours for ours in REQUIRED if ours not in chosen), None)
-    if missing is not None:
-        raise BadInput(f'{path}: no column "{missing}"; {nearest(missing, header)} Rename it in the header line')
-    return chosen
 
 
 def unguarded(column: "pd.Series[str]") -> "pd.Series[str]":
@@ -114,7 +60,7 @@ def unguarded(column: "pd.Series[str]") -> "pd.Series[str]":
 
 def refuse_empty_labels(frame: pd.DataFrame, path: Path) -> None:
     """A rating without a participant, stimulus or question belongs nowhere."""
-    for name in REQUIRED[:3]:
+    for name in LABELLED:
         empty = frame.index[frame[name] == ""]
         if len(empty):
             raise BadInput(f"{path}: line {empty[0] + 2}: {name} is empty; fill it in or delete the line")
@@ -129,7 +75,9 @@ def of_one_mode(frame: pd.DataFrame) -> pd.DataFrame:
     return frame[mode == present].assign(mode=present) if present is not None else frame
 
 
-def numeric_ratings(frame: pd.DataFrame, scale: int | Mapping[str, int] | None, path: Path) -> "pd.Series[float]":
+def numeric_ratings(
+    frame: pd.DataFrame, scale: int | Mapping[str, int | None] | None, path: Path
+) -> "pd.Series[float]":
     """The ratings as numbers, NaN for empty cells; `BadInput` for the first one that is not on its scale."""
     text = frame["rating"].str.strip()
     value = pd.to_numeric(text.where(text != ""), errors="coerce").astype(float)
@@ -141,11 +89,15 @@ def numeric_ratings(frame: pd.DataFrame, scale: int | Mapping[str, int] | None, 
     else:
         highest = frame["question"].map(dict(scale)).astype(float).fillna(np.inf)
     off_scale = np.isfinite(highest) & value.notna() & ((value < 1) | (value > highest) | (value != value.round()))
-    bad = frame.index[unreadable | off_scale]
+    bad = np.flatnonzero(unreadable | off_scale)
     if len(bad):
-        first = bad[0]
-        must = f"a whole number from 1 to {highest[first]:g}" if np.isfinite(highest[first]) else "a finite number"
-        raise BadInput(f'{path}: line {first + 2}: rating "{text[first]}": must be {must}, or empty if it is missing')
+        first, top = bad[0], highest.iloc[bad[0]]
+        must = f"a whole number from 1 to {top:g}" if np.isfinite(top) else "a finite number"
+        other = "; another scale is named by --scale" if isinstance(scale, int) and off_scale.iloc[first] else ""
+        raise BadInput(
+            f'{path}: line {frame.index[first] + 2}: rating "{text.iloc[first]}": must be {must}, or empty if it is '
+            f"missing{other}"
+        )
     return value
 
 
@@ -163,11 +115,11 @@ def refuse_duplicates(frame: pd.DataFrame, path: Path) -> None:
     """Two answers in one session to one question about one picture, neither a repeat nor a revision, are a mistake."""
     names = [c for c in ("session", "participant", "stimulus", "question") if c in frame]
     key = frame.loc[is_first_showing(frame), names]
-    twice = key.index[key.duplicated()]
+    twice = key[key.duplicated()]
     if len(twice):
-        row = frame.loc[twice[0]]
+        row = twice.iloc[0]
         raise BadInput(
-            f'{path}: line {twice[0] + 2}: participant "{row["participant"]}" rated "{row["stimulus"]}" on '
+            f'{path}: line {twice.index[0] + 2}: participant "{row["participant"]}" rated "{row["stimulus"]}" on '
             f'"{row["question"]}" twice; delete one line, or say which is a repeat in column repeat_of'
         )
 
