@@ -3,7 +3,8 @@
     answer = round(intercept + sum of effects of the picture's levels + person + noise), clipped to 1 .. scale
 
 `person` is drawn once for each rater and question, `noise` for each answer, both normal. It is not a model of how
-people use a scale: no anchoring, no fatigue, no learning, no order effects.
+people use a scale: no anchoring, no fatigue, no learning, no order effects. `study_server.crowd` draws from the same
+model for many raters at once.
 """
 
 import tomllib
@@ -17,6 +18,7 @@ from pydantic import Field
 
 from fakesss.problem import BadInput, Strict, nearest, validated
 from study_server.manifest import BuiltStudy, Stimulus
+from study_server.settings import Question
 
 
 class QuestionEffects(Strict):
@@ -25,6 +27,9 @@ class QuestionEffects(Strict):
     intercept: float | None = Field(None, description="mean answer without effects; empty: the scale's middle")
     slopes: dict[str, float] = Field({}, description="factor -> steps per standard deviation of its levels")
     levels: dict[str, dict[str, float]] = Field({}, description="factor -> level -> steps; levels left out: 0")
+    pictures: dict[str, float] = Field(
+        {}, description="stimulus id -> steps: what no factor says, such as an interaction or a picture made elsewhere"
+    )
 
 
 class Effects(Strict):
@@ -64,6 +69,12 @@ def load_effects(path: Path, study: BuiltStudy) -> Effects:
         if name not in questions:
             raise BadInput(f"{path}: question.{name}: the study asks no such question; {nearest(name, questions)}")
         check_factors(of_question, study, f"{path}: question.{name}")
+        for picture in of_question.pictures:
+            if picture not in study.by_id:
+                raise BadInput(
+                    f'{path}: question.{name}.pictures: "{picture}" is no picture of the study; '
+                    f"{nearest(picture, study.by_id)}"
+                )
     return effects
 
 
@@ -124,10 +135,10 @@ def level_key(level: Any) -> str:
 
 
 def shift(effects: QuestionEffects, study: BuiltStudy, stimulus: Stimulus) -> float:
-    """The sum of the effects of this picture's levels, in steps."""
+    """The sum of the effects of this picture's levels and its own, in steps."""
     known = factors_by_name(study)
     given = stimulus.facts.get("factors") or {}
-    total = 0.0
+    total = effects.pictures.get(stimulus.id, 0.0)
     for name, slope in effects.slopes.items():
         factor = known[name]
         if factor["name"] in given:
@@ -142,6 +153,17 @@ def standardised(level: float, levels: list[float]) -> float:
     """(level - mean of levels) / population standard deviation of levels; 0 if there is only one."""
     spread = float(np.std(levels))
     return (level - float(np.mean(levels))) / spread if spread else 0.0
+
+
+def expected(effects: Effects, study: BuiltStudy, question: Question, stimulus: Stimulus) -> float:
+    """Intercept and effects for this picture, in steps: what is answered without person, noise, rounding and clipping.
+
+    A question without effects is answered at the middle of its scale.
+    """
+    of_question = effects.question.get(question.name, QuestionEffects())
+    middle = (1 + question.scale) / 2
+    intercept = middle if of_question.intercept is None else of_question.intercept
+    return intercept + shift(of_question, study, stimulus)
 
 
 @dataclass(frozen=True)
@@ -160,12 +182,10 @@ class Rater:
     def rating(self, stimulus: Stimulus, question: int) -> int:
         """The answer to the question at index `question` for a picture: 1 .. scale."""
         asked = self.study.settings.question[question]
-        effects = self.effects.question.get(asked.name, QuestionEffects())
-        mean = (1 + asked.scale) / 2 if effects.intercept is None else effects.intercept
         person = self.effects.person_sd * self.random(1, question).standard_normal()
         picture = self.study.stimuli.index(stimulus)
         noise = self.effects.noise_sd * self.random(2, question, picture).standard_normal()
-        answer = round(mean + shift(effects, self.study, stimulus) + person + noise)
+        answer = round(expected(self.effects, self.study, asked, stimulus) + person + noise)
         return min(max(answer, 1), asked.scale)
 
     def random(self, *use: int) -> np.random.Generator:

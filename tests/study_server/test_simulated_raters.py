@@ -183,6 +183,10 @@ def test_an_effects_file(tmp_path: Path, built: BuiltStudy) -> None:
             '[question.translucent.levels."diffuse weight"]\n"0" = -1\n"0.0" = -1',
             'levels."diffuse weight": "0" and "0.0" are the same',
         ),
+        (
+            "[question.translucent.pictures]\nimg99 = 1",
+            'pictures: "img99" is no picture of the study; did you mean "img',
+        ),
         ("noise_sd = -1", "noise_sd: -1"),
         ("noise_sd =", "is not TOML"),
     ],
@@ -194,6 +198,22 @@ def test_an_effects_file_that_is_wrong(tmp_path: Path, built: BuiltStudy, text: 
         load_effects(path, built)
     assert sentence in str(problem.value)
     assert str(problem.value).startswith(str(path))
+
+
+def test_what_a_seed_draws_is_kept(built: BuiltStudy) -> None:
+    """Answers published with a seed must come out again, as drawn when effects had no pictures."""
+    rater = Rater(built, default_effects(built), 2011, 3)
+    assert [[rater.rating(stimulus, question) for stimulus in built.stimuli] for question in (0, 1)] == [
+        [5, 4, 5, 4, 4, 5, 3, 3, 4],
+        [5, 4, 4, 6, 2, 2, 3, 4, 5],
+    ]
+
+
+def test_a_picture_has_effects_of_its_own(built: BuiltStudy) -> None:
+    own = QuestionEffects(pictures={"img02": 1.5}, slopes={"backlight": -1.0})
+    without = QuestionEffects(slopes={"backlight": -1.0})
+    moved = [shift(own, built, each) - shift(without, built, each) for each in built.stimuli]
+    assert moved == [0, 1.5, *[0] * (len(moved) - 2)]
 
 
 def test_an_effects_file_that_is_not_there(tmp_path: Path, built: BuiltStudy) -> None:
