@@ -1,6 +1,7 @@
 """Paired contrasts between levels of one factor, adjusted for their number."""
 
 from dataclasses import dataclass
+from typing import Literal
 
 import numpy as np
 import numpy.typing as npt
@@ -35,7 +36,7 @@ class PairedContrasts:
     def __call__(self, frame: pd.DataFrame) -> pd.DataFrame:
         """The table for a long `frame`, one row per participant and level."""
         wide, _ = complete_table(frame, self.value, self.within, self.subject)
-        first, second = np.triu_indices(wide.shape[1], 1)
+        first, second = self.chosen(wide.shape[1])
         names = wide.columns.to_numpy(dtype=object)
         table = pd.DataFrame({"a": names[first], "b": names[second], **self.tests(wide.to_numpy(), first, second)})
         table["p_holm"] = np.nan
@@ -43,6 +44,13 @@ class PairedContrasts:
         if tested.any():
             table.loc[tested, "p_holm"] = multipletests(table.loc[tested, "p"], method="holm")[1]
         return table[["a", "b", "difference", "ci_low", "ci_high", "t", "df", "p", "p_holm", "d_z", "n"]]
+
+    def chosen(self, k: int) -> tuple[Indices, Indices]:
+        """Places of the first and second level of each pair that is tested."""
+        if self.pairs == "all":
+            return np.triu_indices(k, 1)
+        second = np.arange(1, k)
+        return (second - 1 if self.pairs == "neighbours" else np.zeros_like(second)), second
 
     def tests(self, wide: Floats, first: Indices, second: Indices) -> dict[str, Floats]:
         """Columns of the t tests of the pairs of columns (`first`, `second`) of a subjects x levels table."""
