@@ -8,6 +8,7 @@ from typing import Any
 
 STATISTICS = {
     "Equivalence": "analysis.statistics.equivalence",
+    "FactorialAnova": "analysis.statistics.factorial",
     "Friedman": "analysis.statistics.friedman",
     "IntraclassCorrelation": "analysis.statistics.agreement",
     "KrippendorffAlpha": "analysis.statistics.agreement",
