@@ -1,17 +1,13 @@
 """Tukey's honestly significant difference, between independent samples or within the same people."""
 
 from dataclasses import dataclass
-from functools import lru_cache
-from itertools import combinations
 
 import numpy as np
 import pandas as pd
-from scipy import stats
 
 from analysis.statistics.anova import OneWayAnova, RepeatedMeasuresAnova
+from analysis.statistics.studentized_range import studentized_quantile, tail_probabilities
 from analysis.statistics.undefined import complete_table, groups_of
-
-P_FLOOR = 1e-10  # scipy's studentized range is accurate to about 1e-14 absolutely: smaller p values are bounds
 
 
 @dataclass(frozen=True)
@@ -34,8 +30,28 @@ class TukeyHSD:
     def __call__(self, frame: pd.DataFrame) -> pd.DataFrame:
         """The table for a long `frame`, one row per rating."""
         samples, mse, df = self.error_term(frame)
+        names = np.empty(len(samples), dtype=object)
+        names[:] = list(samples)
+        means, sizes = np.array(list(samples.values()), dtype=float).T
+        a, b = np.triu_indices(len(samples), 1)
+        error = np.sqrt(mse / 2 * (1 / sizes[a] + 1 / sizes[b]))
+        difference = means[a] - means[b]
+        q = np.abs(difference) / error
+        half, at_05, at_01 = (studentized_quantile(x, len(samples), df) * error for x in (self.confidence, 0.95, 0.99))
         return pd.DataFrame(
-            [self.pair(a, b, samples, mse, df) for a, b in combinations(samples, 2)],
+            {
+                "a": names[a],
+                "b": names[b],
+                "difference": difference,
+                "q": q,
+                "p": tail_probabilities(q, len(samples), df),
+                "ci_low": difference - half,
+                "ci_high": difference + half,
+                "critical_05": at_05,
+                "critical_01": at_01,
+                "df": df,
+                "mse": mse,
+            }
         )
 
     def error_term(self, frame: pd.DataFrame) -> tuple[dict[object, tuple[float, int]], float, int]:
@@ -49,32 +65,3 @@ class TukeyHSD:
         wide, _ = complete_table(frame, self.value, self.group, self.subject)
         samples = {level: (float(wide[level].mean()), len(wide)) for level in wide.columns}
         return samples, float(anova["ms_error"]), int(anova["df2"])
-
-    def pair(
-        self, a: object, b: object, samples: dict[object, tuple[float, int]], mse: float, df: int
-    ) -> dict[str, object]:
-        """The row of one pair."""
-        (mean_a, n_a), (mean_b, n_b), k = samples[a], samples[b], len(samples)
-        error = float(np.sqrt(mse / 2 * (1 / n_a + 1 / n_b)))
-        difference = mean_a - mean_b
-        half = studentized_quantile(self.confidence, k, df) * error
-        q = abs(difference) / error
-        return {
-            "a": a,
-            "b": b,
-            "difference": difference,
-            "q": q,
-            "p": max(float(stats.studentized_range.sf(q, k, df)), P_FLOOR),
-            "ci_low": difference - half,
-            "ci_high": difference + half,
-            "critical_05": studentized_quantile(0.95, k, df) * error,
-            "critical_01": studentized_quantile(0.99, k, df) * error,
-            "df": df,
-            "mse": mse,
-        }
-
-
-@lru_cache(maxsize=1024)
-def studentized_quantile(level: float, k: int, df: float) -> float:
-    """q(k, df) at `level`. R: `qtukey(level, k, df)`. Kept, as each takes scipy about 70 ms."""
-    return float(stats.studentized_range.ppf(level, k, df))

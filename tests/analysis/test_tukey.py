@@ -6,7 +6,7 @@ import pytest
 from scipy import stats
 
 from analysis import TukeyHSD
-from analysis.statistics.tukey import P_FLOOR, studentized_quantile
+from analysis.statistics.studentized_range import P_FLOOR, studentized_quantile
 
 
 def uneven() -> pd.DataFrame:
