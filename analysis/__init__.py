@@ -7,6 +7,7 @@ from importlib import import_module
 from typing import Any
 
 STATISTICS = {
+    "Adjusted": "analysis.statistics.multiplicity",
     "Equivalence": "analysis.statistics.equivalence",
     "FactorialAnova": "analysis.statistics.factorial",
     "Friedman": "analysis.statistics.friedman",
@@ -15,8 +16,10 @@ STATISTICS = {
     "MeanIntervals": "analysis.statistics.intervals",
     "OneWayAnova": "analysis.statistics.anova",
     "PairedContrasts": "analysis.statistics.contrasts",
+    "PlannedContrast": "analysis.statistics.planned",
     "RepeatedMeasuresAnova": "analysis.statistics.anova",
     "SignedRanks": "analysis.statistics.wilcoxon",
+    "SimpleEffects": "analysis.statistics.simple_effects",
     "TukeyHSD": "analysis.statistics.tukey",
     "read_ratings": "analysis.ratings",
     "write_report": "analysis.report",
