@@ -5,6 +5,7 @@ from collections.abc import Callable, Sequence
 from analysis.evidence import Evidence
 from analysis.remarks import not_live
 from analysis.results import METHODS
+from analysis.script import SCRIPT, script_source
 from analysis.section import TEMPLATES, Section
 from analysis.sections.agreement import agreement
 from analysis.sections.people import people
@@ -13,6 +14,7 @@ from analysis.sections.ratings import ratings
 from analysis.sections.tests import tests
 from analysis.sections.thesis import thesis
 from analysis.sentences import apa_sentence, findings
+from analysis.wording import counted
 
 SECTIONS: tuple[Callable[[Evidence], Section | None], ...] = (people, pictures, ratings, thesis, tests, agreement)
 """In the order of the page."""
@@ -31,6 +33,8 @@ def render_page(evidence: Evidence, sections: Sequence[Section], said: Sequence[
         study=study,
         plan=plan,
         sample=sample,
+        counted=counted,
+        lead=lead(evidence),
         not_live=not_live(sample.everything),
         method=METHODS[sample.mode],
         findings=findings(study, evidence.main, plan),
@@ -40,4 +44,20 @@ def render_page(evidence: Evidence, sections: Sequence[Section], said: Sequence[
         remarks=said,
         tables=[name for section in sections for name in section.tables],
         origin=origin,
+        thumbnails={
+            key: uri for section in sections for each in section.drawings for key, uri in each.pictures.items()
+        },
+        script=SCRIPT,
+        script_source=script_source(),
+    )
+
+
+def lead(evidence: Evidence) -> str:
+    """Who is analysed, and what it takes to be named below."""
+    sample, alpha = evidence.sample, evidence.plan.alpha
+    test = "repeated-measures ANOVA, Greenhouse–Geisser corrected" if sample.mode == "repeated" else "one-way ANOVA"
+    return (
+        f"{counted(sample.n_started, 'person').replace('persons', 'people')} started, {sample.n_completed} completed, "
+        f"{sample.n_analysed} are analysed. An effect is named where p < {alpha:g} ({test}); the interval of each "
+        "difference allows for all pairs (Tukey)."
     )

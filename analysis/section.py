@@ -9,11 +9,13 @@ from jinja2 import Environment, PackageLoader, StrictUndefined, select_autoescap
 from markupsafe import Markup
 
 from analysis.figures.style import Drawing
+from analysis.sorting import sortable
 
 TEMPLATES = Environment(
     loader=PackageLoader("analysis"), autoescape=select_autoescape(), undefined=StrictUndefined, trim_blocks=True,
     lstrip_blocks=True,
 )  # fmt: skip
+TEMPLATES.filters["sortable"] = sortable
 
 
 @dataclass(frozen=True)

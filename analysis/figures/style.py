@@ -1,11 +1,12 @@
 """How every figure looks, and how it becomes SVG and PNG: one style, no dates inside, letters looked after."""
 
 import base64
+import hashlib
 import io
 import re
 import warnings
-from collections.abc import Sequence
-from dataclasses import dataclass
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
@@ -40,44 +41,51 @@ STYLE: dict[Any, Any] = {
     "svg.hashsalt": "fakesss",
     "svg.fonttype": "path",
 }
+THUMBNAIL_IN_SVG = re.compile(
+    r'(?P<head><g id="thumbnail-(?P<place>\d+)">\s*)<image [^>]*?'
+    r'transform="scale\(1 -1\) translate\(0 (?P<moved>[-\d.]+)\)" x="(?P<x>[-\d.]+)" y="(?P<y>[-\d.]+)" '
+    r'width="(?P<width>[\d.]+)" height="(?P<height>[\d.]+)"/>'
+)
 NO_DATE = {"Date": None, "Creator": None, "Format": None, "Type": None}
 
 
 @dataclass(frozen=True)
 class Drawing:
-    """A figure as SVG text and PNG bytes, with its file stem, what it shows in words, and letters no font here has."""
+    """A figure as SVG text and PNG bytes, with its file stem, what it shows in words, letters no font here has, and
+    the pictures of stimuli in it: key -> `data:` address."""
 
     stem: str
     svg: str
     png: bytes
     caption: str
     missing: str = ""
+    pictures: Mapping[str, str] = field(default_factory=dict)
 
     @property
     def inline(self) -> str:
-        """The SVG to stand in a page with others: no prolog, ids no other figure has, a name for screen readers."""
+        """The SVG to stand in a page with others, which keeps the stimuli's pictures once for all of them: no prolog,
+        ids no other figure has, a name for screen readers."""
         body = self.svg[self.svg.index("<svg") :]
-        body = re.sub(r' id="image[^"]*"', "", body)  # named by content: one picture in two places would share it
-        body = re.sub(r'(\bid="|url\(#|href="#)', rf"\1{self.stem}-", body)
+        body = re.sub(r'<image id="picture-[^>]*>', "", body)
+        body = re.sub(r'(\bid="|url\(#|href="#(?!picture-))', rf"\1{self.stem}-", body)
         return re.sub(r"<svg\b", f'<svg role="img" aria-labelledby="caption-{self.stem}"', body, count=1)
 
 
-def place_thumbnail(axes: Axes, place: float, file: Path) -> None:
-    """The picture itself below its place on the axis."""
-    box = OffsetImage(np.asarray(thumbnail(file)), zoom=36 / THUMBNAIL)
-    axes.add_artist(
-        AnnotationBbox(
-            box,
-            (place, 0),
-            xybox=(0, -4),
-            xycoords=("data", "axes fraction"),
-            boxcoords="offset points",
-            box_alignment=(0.5, 1),
-            frameon=False,
-            pad=0,
-            annotation_clip=False,
-        )
+def place_thumbnail(axes: Axes, place: float, file: Path, side: float = 36, beside: bool = False) -> None:
+    """The picture itself, `side` points wide, below its place on the horizontal axis, or beside it on the vertical."""
+    box = OffsetImage(np.asarray(thumbnail(file)), zoom=side / THUMBNAIL)
+    where = AnnotationBbox(
+        box,
+        (0, place) if beside else (place, 0),
+        xybox=(-4, 0) if beside else (0, -4),
+        xycoords=("axes fraction", "data") if beside else ("data", "axes fraction"),
+        boxcoords="offset points",
+        box_alignment=(1, 0.5) if beside else (0.5, 1),
+        frameon=False,
+        pad=0,
+        annotation_clip=False,
     )
+    axes.add_artist(where)
 
 
 def thumbnail(file: Path, side: int = THUMBNAIL) -> Image.Image:
@@ -89,11 +97,11 @@ def thumbnail(file: Path, side: int = THUMBNAIL) -> Image.Image:
     return colour.crop((left, top, left + edge, top + edge)).resize((side, side), Image.Resampling.LANCZOS)
 
 
-def thumbnail_uri(file: Path) -> str:
-    """The reduced picture as a `data:` address, so that the page needs no other file."""
+def data_uri(picture: Image.Image) -> str:
+    """The picture as a `data:` address, so that the page needs no other file."""
     stream = io.BytesIO()
-    thumbnail(file, 192).save(stream, "PNG", optimize=True)
-    return "data:image/png;base64," + base64.b64encode(stream.getvalue()).decode()
+    picture.save(stream, "JPEG", quality=88, optimize=True)
+    return "data:image/jpeg;base64," + base64.b64encode(stream.getvalue()).decode()
 
 
 def folded(text: str, width: int = 14) -> str:
@@ -109,13 +117,45 @@ def folded(text: str, width: int = 14) -> str:
 
 def drawn(figure: Figure, stem: str, caption: str) -> Drawing:
     """The figure in both formats; no dates inside, so equal data give equal bytes."""
+    keys, pictures = named_pictures(figure)
     svg, png = io.StringIO(), io.BytesIO()
     with warnings.catch_warnings(record=True) as caught:
         warnings.filterwarnings("always", message=r"Glyph \d+")
         figure.savefig(svg, format="svg", metadata=NO_DATE)
         FigureCanvasAgg(figure).print_figure(png, format="png", dpi=200, metadata={"Software": None})
     codes = {int(code) for each in caught for code in re.findall(r"^Glyph (\d+)", str(each.message))}
-    return Drawing(stem, svg.getvalue(), png.getvalue(), caption, "".join(map(chr, sorted(codes))))
+    text = with_pictures_once(svg.getvalue(), keys, pictures)
+    return Drawing(stem, text, png.getvalue(), caption, "".join(map(chr, sorted(codes))), pictures)
+
+
+def named_pictures(figure: Figure) -> tuple[list[str], dict[str, str]]:
+    """Marks every thumbnail placed in `figure`; the key of each in turn, and key -> `data:` address."""
+    keys: list[str] = []
+    pictures: dict[str, str] = {}
+    for place, box in enumerate(figure.findobj(AnnotationBbox)):
+        assert isinstance(box, AnnotationBbox) and isinstance(box.offsetbox, OffsetImage)
+        pixels = np.asarray(box.offsetbox.get_data())
+        key = hashlib.sha256(pixels.tobytes()).hexdigest()[:12]
+        box.set_gid(f"thumbnail-{place}")
+        keys.append(key)
+        pictures.setdefault(key, data_uri(Image.fromarray(pixels)))
+    return keys, pictures
+
+
+def with_pictures_once(svg: str, keys: Sequence[str], pictures: Mapping[str, str]) -> str:
+    """matplotlib writes each thumbnail anew and at 72 pixels an inch; here each is kept once, and sharp."""
+
+    def use(found: re.Match[str]) -> str:
+        x, y, width, height, moved = (float(found[name]) for name in ("x", "y", "width", "height", "moved"))
+        top = -(y + moved + height)  # it stands upside down there, and is mirrored
+        where = f"translate({x:g} {top:g}) scale({width:g} {height:g})"
+        return f'{found["head"]}<use xlink:href="#picture-{keys[int(found["place"])]}" transform="{where}"/>'
+
+    text = THUMBNAIL_IN_SVG.sub(use, svg)
+    kept = "".join(
+        f'<image id="picture-{key}" width="1" height="1" xlink:href="{uri}"/>' for key, uri in pictures.items()
+    )
+    return text.replace("<defs>", f"<defs>{kept}", 1) if kept else text
 
 
 def letters_missing(drawings: Sequence[Drawing]) -> list[str]:

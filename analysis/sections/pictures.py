@@ -3,7 +3,7 @@
 from typing import Any
 
 from analysis.evidence import Evidence
-from analysis.figures.style import thumbnail_uri
+from analysis.figures.style import data_uri, thumbnail
 from analysis.section import Section, rendered
 from analysis.study import StudyInfo
 from analysis.wording import level_text
@@ -23,7 +23,9 @@ def shown(study: StudyInfo) -> list[dict[str, Any]]:
             "role": picture.role,
             "levels": [(name, level_text(value)) for name, value in picture.levels],
             "same": picture.same_picture_as,
-            "image": thumbnail_uri(picture.file) if picture.file is not None and picture.file.is_file() else None,
+            "image": data_uri(thumbnail(picture.file, 192))
+            if picture.file is not None and picture.file.is_file()
+            else None,
         }
         for picture in study.pictures
     ]

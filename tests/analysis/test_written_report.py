@@ -107,7 +107,7 @@ def test_the_page_needs_no_other_host(thesis_report: Path) -> None:
     out = thesis_report
     page = read_page(out / "index.html")
     for address in page.addresses:
-        assert address.startswith(("#", "data:image/png;base64,")) or (out / address).is_file()
+        assert address.startswith(("#", "data:image/jpeg;base64,")) or (out / address).is_file()
     style = re.search(r"<style>(.*?)</style>", (out / "index.html").read_text(), re.DOTALL)
     assert style is not None and "url(" not in style[1] and "@import" not in style[1]
     assert len(page.ids) == len(set(page.ids))
