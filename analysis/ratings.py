@@ -1,13 +1,14 @@
 """Ratings from a CSV file, one row per rating: checked line by line, the latest revision kept, ready for statistics."""
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pandas as pd
 
 from analysis.columns import LABELLED, read_cells
-from analysis.labels import natural_key
+from analysis.labels import natural_order
 from fakesss.problem import BadInput
 
 MEASURED = ("rt_ms", "focus_lost_ms")
@@ -44,7 +45,7 @@ def read_ratings(
     frame = of_one_mode(frame).copy()
     frame["rating"] = numeric_ratings(frame, scale, path)
     for name in (measured for measured in MEASURED if measured in frame):
-        frame[name] = pd.to_numeric(frame[name], errors="coerce")
+        frame[name] = of_distinct(frame[name], lambda texts: pd.to_numeric(texts, errors="coerce"))
     frame = latest_revision(frame)
     refuse_duplicates(frame, path)
     if "started_at" in frame:
@@ -55,7 +56,14 @@ def read_ratings(
 
 def unguarded(column: "pd.Series[str]") -> "pd.Series[str]":
     """Labels as they were before the export made them safe for spreadsheets."""
-    return column.str.strip().str.replace(GUARD, "", regex=True)
+    return of_distinct(column, lambda texts: texts.str.strip().str.replace(GUARD, "", regex=True))
+
+
+def of_distinct(column: "pd.Series[str]", change: Callable[["pd.Series[str]"], "pd.Series[Any]"]) -> "pd.Series[Any]":
+    """`change(column)`, worked out once for each distinct text: of a million cells few are different."""
+    codes, distinct = pd.factorize(column)
+    changed = change(pd.Series(distinct, dtype=column.dtype))
+    return pd.Series(changed.array.take(codes), index=column.index, name=column.name)
 
 
 def refuse_empty_labels(frame: pd.DataFrame, path: Path) -> None:
@@ -79,8 +87,8 @@ def numeric_ratings(
     frame: pd.DataFrame, scale: int | Mapping[str, int | None] | None, path: Path
 ) -> "pd.Series[float]":
     """The ratings as numbers, NaN for empty cells; `BadInput` for the first one that is not on its scale."""
-    text = frame["rating"].str.strip()
-    value = pd.to_numeric(text.where(text != ""), errors="coerce").astype(float)
+    text = of_distinct(frame["rating"], lambda texts: texts.str.strip())
+    value: "pd.Series[float]" = of_distinct(text, lambda texts: pd.to_numeric(texts, errors="coerce")).astype(float)
     unreadable = (text != "") & ~np.isfinite(value)
     if scale is None:
         highest = pd.Series(np.inf, index=frame.index)
@@ -106,7 +114,9 @@ def latest_revision(frame: pd.DataFrame) -> pd.DataFrame:
     if "revision" not in frame:
         return frame
     key = [c for c in ("session", "participant", "trial", "presentation", "stimulus", "question") if c in frame]
-    number = pd.to_numeric(frame["revision"], errors="coerce").fillna(0)
+    number = of_distinct(frame["revision"], lambda texts: pd.to_numeric(texts, errors="coerce")).fillna(0)
+    if number.nunique() == 1:
+        return frame
     latest = number.groupby([frame[name] for name in key]).transform("max")
     return frame[number == latest].copy()
 
@@ -145,6 +155,7 @@ def is_check(frame: pd.DataFrame) -> "pd.Series[bool]":
 
 def ranks(column: "pd.Series[str]") -> "pd.Series[int]":
     """Each label's place, for sorting: sessions in the order in which they occur, all else in natural order."""
-    labels = list(column.unique())
-    ordered = labels if column.name == "session" else sorted(labels, key=natural_key)
-    return column.map({label: rank for rank, label in enumerate(ordered)})
+    codes, labels = pd.factorize(column)
+    ordered = list(labels) if column.name == "session" else natural_order(labels)
+    place = {label: rank for rank, label in enumerate(ordered)}
+    return pd.Series(np.array([place[label] for label in labels])[codes], index=column.index)
