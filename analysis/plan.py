@@ -1,7 +1,9 @@
 """What will be tested, written before the data: the `[analysis]` table of study.toml."""
 
 import math
+import tomllib
 from collections.abc import Mapping
+from pathlib import Path
 from typing import Annotated, Any, Literal
 
 from pydantic import Field, model_validator
@@ -118,6 +120,19 @@ class AnalysisPlan(Strict):
             if twice is not None:
                 raise ValueError(f'{kind} "{twice[0]}" of question "{twice[1]}" stands twice; rename one')
         return self
+
+
+def read_plan(path: Path) -> AnalysisPlan:
+    """The `[analysis]` table of a TOML file of its own, for ratings from elsewhere."""
+    try:
+        table = tomllib.loads(path.read_text(encoding="utf-8"))
+    except FileNotFoundError:
+        raise BadInput(f"{path}: no such file; check the path") from None
+    except (OSError, UnicodeDecodeError, tomllib.TOMLDecodeError) as error:
+        raise BadInput(f"{path}: cannot be read as TOML ({error}); see [analysis] in the documentation") from None
+    if "analysis" not in table:
+        raise BadInput(f"{path}: has no table [analysis]; write one, the plan stands in it")
+    return check_analysis(table, str(path))
 
 
 def check_analysis(study_table: Mapping[str, Any], source: str) -> AnalysisPlan:

@@ -12,12 +12,10 @@ from analysis.study import StudyInfo
 SOFTWARE = ("fakesss", "numpy", "scipy", "pandas", "statsmodels", "pingouin", "matplotlib")
 
 
-def provenance(ratings: Path, frame: pd.DataFrame, study: StudyInfo, manifest: Path | None) -> dict[str, str]:
+def provenance(ratings: Path, frame: pd.DataFrame, study: StudyInfo, command: str) -> dict[str, str]:
     """What stands in the session block. Nothing depends on the clock or the machine's paths."""
-    # a study's folder is named after the study; the manifest stands in its stimuli/
-    folder = f"{manifest.resolve().parent.parent.name} " if manifest is not None else ""
     lines = {
-        "command": f"fakesss report {folder}--ratings {ratings.name}",
+        "command": command,
         "ratings": ratings.name,
         "SHA-256 of the ratings": sha256(ratings),
         "SHA-256 of the study": study.sha256 or "no study given",

@@ -88,7 +88,7 @@ def numeric_ratings(
 ) -> "pd.Series[float]":
     """The ratings as numbers, NaN for empty cells; `BadInput` for the first one that is not on its scale."""
     text = of_distinct(frame["rating"], lambda texts: texts.str.strip())
-    value: "pd.Series[float]" = of_distinct(text, lambda texts: pd.to_numeric(texts, errors="coerce")).astype(float)
+    value: pd.Series[float] = of_distinct(text, lambda texts: pd.to_numeric(texts, errors="coerce")).astype(float)
     unreadable = (text != "") & ~np.isfinite(value)
     if scale is None:
         highest = pd.Series(np.inf, index=frame.index)

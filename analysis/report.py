@@ -10,13 +10,14 @@ import pandas as pd
 
 from analysis.evidence import Progress, gather
 from analysis.figures.style import Drawing, letters_missing
+from analysis.levels import from_ratings, read_levels
 from analysis.page import render_page, sections_of
 from analysis.plan import AnalysisPlan
 from analysis.provenance import provenance
 from analysis.ratings import DEFAULT_SCALE, read_ratings
 from analysis.remarks import remarks
 from analysis.sample import Sample, draw_sample
-from analysis.study import StudyInfo, from_ratings, read_manifest
+from analysis.study import StudyInfo, read_manifest
 from fakesss.problem import BadInput
 
 
@@ -28,22 +29,32 @@ def write_report(
     plan: AnalysisPlan | None = None,
     participants: Path | None = None,
     columns: Mapping[str, str] | None = None,
-    scale: int = DEFAULT_SCALE,
+    wide: str | None = None,
+    factors: Mapping[str, str] | None = None,
+    scale: int | None = DEFAULT_SCALE,
+    command: str | None = None,
     progress: Progress | None = None,
 ) -> dict[str, Any]:
     """Writes index.html, results.json, tables/*.csv and figures/*.svg, *.png into `out`; returns what is in
     results.json.
 
-    `ratings`: long CSV (contract.md's columns, or others named by `columns` or their aliases). `manifest`: the study's
-    manifest.json, for factors, labels, scales and pictures; without it every picture is compared with every other and
-    answers are 1..`scale`. `plan`: overrides the manifest's `[analysis]`. `participants`: CSV of all who started.
+    `ratings`: long CSV (contract.md's columns, or others named by `columns` or their aliases), or a wide one (`wide`:
+    the form of its pictures' columns, "img*"). `manifest`: the study's manifest.json, for factors, labels, scales and
+    pictures; without it `factors` names columns that hold levels (factor -> column; without any every picture is
+    compared with every other) and answers are 1..`scale`, or any number where it is None. `plan`: overrides the
+    manifest's `[analysis]`. `participants`: CSV of all who started. `command`: stands in the session block.
     `progress(done, total, what)` is called before each analysis and at the end. Raises `BadInput` for what a user can
     mend. Equal input gives equal bytes.
     """
-    study = read_manifest(manifest) if manifest is not None else None
-    scales = {q.name: q.scale for q in study.questions} if study is not None else scale
-    frame = read_ratings(ratings, columns, scales)
-    study = study or from_ratings(frame, f"Ratings in {ratings.name}", scale)
+    known = read_manifest(manifest) if manifest is not None else None
+    refuse_contradictions(known is not None, wide, factors)
+    scales = {q.name: q.scale for q in known.questions} if known is not None else scale
+    asked = known.questions[0].name if known is not None and len(known.questions) == 1 else None
+    frame = read_ratings(ratings, columns, scales, wide=wide, question=asked)
+    study = known or from_ratings(
+        frame, f"Ratings in {ratings.name}", scale, list(factors or {}),
+        read_levels(ratings, columns or {}, factors) if factors else None,
+    )  # fmt: skip
     refuse_strangers(study, frame, ratings)
     plan = plan or study.plan
     sample = draw_sample(frame[frame["question"].isin([q.name for q in study.questions])], plan, participants)
@@ -53,7 +64,7 @@ def write_report(
     notes = [*evidence.notes, *(sentence for section in sections for sentence in section.warnings)]
     said = [*remarks(study, plan, sample, frame, evidence.main, notes), *letters_missing(drawings)]
     tables = {name: table for section in sections for name, table in section.tables.items()}
-    origin = provenance(ratings, frame, study, manifest)
+    origin = provenance(ratings, frame, study, command or f"write_report({ratings.name})")
     results = results_json(study, plan, sample, tables, said, origin)
     save(out, render_page(evidence, sections, said, origin), results, tables, drawings)
     return results
@@ -81,6 +92,17 @@ def results_json(
         "warnings": said,
         "session": origin,
     }
+
+
+def refuse_contradictions(has_study: bool, wide: str | None, factors: Mapping[str, str] | None) -> None:
+    """Levels come from the study, or from a column of a file with a row per rating."""
+    if factors and has_study:
+        raise BadInput("factors: the study says which picture has which level; leave --factor out, or the study")
+    if factors and wide is not None:
+        raise BadInput(
+            "factors: a file with a column for each picture has none for their levels; write one row per rating "
+            "(pandas: frame.melt), then name the column of each factor"
+        )
 
 
 def refuse_strangers(study: StudyInfo, frame: pd.DataFrame, ratings: Path) -> None:

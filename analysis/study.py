@@ -1,13 +1,10 @@
-"""What the analysis needs to know of a study: read from the manifest, or guessed from the ratings alone."""
+"""What the analysis needs to know of a study: read from the manifest (or guessed from ratings: `analysis.levels`)."""
 
 import json
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-import pandas as pd
-
-from analysis.labels import natural_order
 from analysis.plan import AnalysisPlan, check_analysis
 from analysis.ratings import DEFAULT_SCALE
 from fakesss.problem import BadInput
@@ -116,16 +113,4 @@ def read_picture(entry: dict[str, Any], folder: Path) -> Picture:
         rows=tuple(entry.get("rows") or ()),
         same_picture_as=entry.get("same_picture_as"),
         file=folder / entry["file"],
-    )
-
-
-def from_ratings(ratings: pd.DataFrame, title: str, scale: int | None) -> StudyInfo:
-    """A study known by its ratings alone: no factors, every picture compared with every other."""
-    return StudyInfo(
-        title=title,
-        design="unknown",
-        factors=(),
-        questions=tuple(Question(str(name), scale=scale) for name in ratings["question"].drop_duplicates()),
-        pictures=tuple(Picture(str(name), str(name)) for name in natural_order(ratings["stimulus"])),
-        plan=AnalysisPlan(),
     )
