@@ -1,0 +1,207 @@
+"""What the calibration study draws and judges: people without (or with known) effects, and what each statistic says.
+
+    answer = mean of the picture + person + noise, on a rating scale rounded and clipped to 1..7
+
+as study_server/raters.py answers, with its spreads. Every
+statistic is the public object, called as the report calls it.
+"""
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, replace
+from functools import cached_property
+
+import numpy as np
+import pandas as pd
+from scipy import stats
+
+from analysis.statistics.agreement import IntraclassCorrelation, KrippendorffAlpha
+from analysis.statistics.anova import OneWayAnova, RepeatedMeasuresAnova
+from analysis.statistics.contrasts import PairedContrasts
+from analysis.statistics.equivalence import Equivalence
+from analysis.statistics.friedman import Friedman
+from analysis.statistics.intervals import MeanIntervals
+from analysis.statistics.tukey import TukeyHSD
+from analysis.statistics.undefined import Floats
+from analysis.statistics.wilcoxon import SignedRanks
+
+ALPHA = 0.05
+STEPS = 7
+PERSON_SD, NOISE_SD = 0.7, 0.9  # study_server.raters.Effects
+PICTURE_SD = 1.0
+BETWEEN = {"value": "rating", "group": "condition"}
+WITHIN = {"value": "rating", "within": "condition", "subject": "participant"}
+UNEQUAL = (0.4, 0.4, 0.4, 2.0)  # one picture divides people: epsilon about .35, sphericity is far off
+
+Draw = Callable[[np.random.Generator], pd.DataFrame]
+Judge = Callable[[pd.DataFrame], Mapping[str, bool]]
+
+
+@dataclass(frozen=True)
+class Crowd:
+    """`people` who rate pictures of the given latent `means` (for each picture, where `independent`).
+
+    `noises`: standard deviations of the noise, one a picture. `steps`: 1..7 are answered; else the latent value itself.
+    """
+
+    name: str
+    people: int
+    means: tuple[float, ...]
+    steps: bool = False
+    noises: tuple[float, ...] | None = None
+    independent: bool = False
+
+    def frame(self, random: np.random.Generator) -> pd.DataFrame:
+        """One study: `participant, condition, rating`."""
+        n, k = self.people, len(self.means)
+        person = PERSON_SD * random.standard_normal((n, k if self.independent else 1))
+        noise = np.array(self.noises or (NOISE_SD,)) * random.standard_normal((n, k))
+        latent = np.array(self.means) + person + noise
+        rating = np.clip(np.rint(latent), 1, STEPS) if self.steps else latent
+        who = np.arange(n * k) if self.independent else np.repeat(np.arange(n), k)
+        condition = np.tile([f"M{place}" for place in range(1, k + 1)], n)
+        return pd.DataFrame({"participant": who, "condition": condition, "rating": rating.ravel()})
+
+    @cached_property
+    def truth(self) -> Floats:
+        """The population mean of each picture's ratings."""
+        spread = np.hypot(PERSON_SD, np.broadcast_to(self.noises or NOISE_SD, len(self.means)))
+        return expected(np.array(self.means), spread) if self.steps else np.array(self.means)
+
+
+def expected(mean: Floats, spread: Floats | float) -> Floats:
+    """Mean answer on 1..7 where the latent answer is normal: 1 + the probabilities of at least 2, 3, ..., 7."""
+    edges = np.arange(1, STEPS) + 0.5
+    return np.asarray(1 + stats.norm.sf((edges - mean[:, None]) / np.broadcast_to(spread, mean.shape)[:, None]).sum(1))
+
+
+def no_effect_between(frame: pd.DataFrame, crowd: Crowd) -> dict[str, bool]:
+    """Independent samples of one population."""
+    mean = MeanIntervals(**BETWEEN)(frame).iloc[0]
+    return {
+        "one-way F": OneWayAnova(**BETWEEN)(frame)["p"].iloc[0] < ALPHA,
+        "Tukey, independent samples, any pair": (TukeyHSD(**BETWEEN)(frame)["p"] < ALPHA).any(),
+        "95% CI of a mean, between people": covers(mean, crowd.truth[0]),
+    }
+
+
+def no_effect_within(frame: pd.DataFrame) -> dict[str, bool]:
+    """The same people, all pictures alike in the mean."""
+    anova = RepeatedMeasuresAnova(**WITHIN)(frame).iloc[0]
+    tukey = TukeyHSD("rating", "condition", "participant")(frame)
+    return {
+        "repeated-measures F, uncorrected": anova["p"] < ALPHA,
+        "repeated-measures F, Greenhouse-Geisser": anova["p_gg"] < ALPHA,
+        "repeated-measures F, Huynh-Feldt": anova["p_hf"] < ALPHA,
+        "Friedman": Friedman(**WITHIN)(frame)["p"].iloc[0] < ALPHA,
+        "paired t tests with Holm, any pair": (PairedContrasts(**WITHIN)(frame)["p_holm"] < ALPHA).any(),
+        "Tukey, repeated measures, any pair": (tukey["p"] < ALPHA).any(),
+    }
+
+
+def effect_between(frame: pd.DataFrame, crowd: Crowd) -> dict[str, bool]:
+    """Independent samples of unlike means: do the intervals hold the truth?"""
+    anova = OneWayAnova(**BETWEEN)(frame).iloc[0]
+    found = {"95% CIs of Tukey, independent samples, all pairs": covers_pairs(TukeyHSD(**BETWEEN)(frame), crowd)}
+    if not crowd.steps:
+        effect = float(np.var(crowd.truth))
+        found["90% CI of eta squared"] = covers(anova, effect / (effect + PERSON_SD**2 + NOISE_SD**2))
+    return found
+
+
+def effect_within(frame: pd.DataFrame, crowd: Crowd) -> dict[str, bool]:
+    """The same people, pictures of unlike means."""
+    means = MeanIntervals("rating", "condition", "participant")(frame)
+    halves = (means["ci_high"] - means["mean"]).to_numpy()
+    gap, truth = means["mean"].iloc[1] - means["mean"].iloc[0], crowd.truth
+    found = {
+        "95% CI of a paired difference": covers(PairedContrasts(**WITHIN)(frame).iloc[0], truth[0] - truth[1]),
+        "95% CIs of Tukey, repeated measures, all pairs": covers_pairs(
+            TukeyHSD("rating", "condition", "participant")(frame), crowd
+        ),
+        "95% CI of Cousineau and Morey, of the picture's own mean": covers(means.iloc[0], truth[0]),
+        "95% CI of Cousineau and Morey times √2, of a difference": abs(gap - (truth[1] - truth[0]))
+        <= np.sqrt(2) * halves[:2].mean(),
+    }
+    if not crowd.steps:
+        anova = RepeatedMeasuresAnova(**WITHIN)(frame).iloc[0]
+        k, squares = len(truth), float(((truth - truth.mean()) ** 2).sum())
+        partial_eta = squares / (squares + (k - 1) * NOISE_SD**2)
+        found["90% CI of partial eta squared"] = anova["partial_ci_low"] <= partial_eta <= anova["partial_ci_high"]
+        general = squares / (squares + k * PERSON_SD**2 + k * NOISE_SD**2)
+        found["90% CI of generalized eta squared"] = covers(anova, general)
+    return found
+
+
+def two_alike(frame: pd.DataFrame) -> dict[str, bool]:
+    """Two pictures of one mean."""
+    return {"Wilcoxon, signed ranks": SignedRanks(**WITHIN)(frame)["p"].iloc[0] < ALPHA}
+
+
+def at_the_margin(frame: pd.DataFrame, crowd: Crowd) -> dict[str, bool]:
+    """Two pictures exactly one margin apart: calling them equivalent is an error."""
+    subject, name = (None, "Welch") if crowd.independent else ("participant", "paired")
+    test = Equivalence("rating", "condition", subject, margin=float(abs(crowd.truth[1] - crowd.truth[0])))
+    return {f"TOST at the margin, {name}": test(frame)["p_equivalence"].iloc[0] < ALPHA}
+
+
+@dataclass(frozen=True)
+class Gallery:
+    """`people` who rate pictures drawn at random from all, whose latent means spread by `PICTURE_SD` about 4."""
+
+    name: str
+    people: int
+    pictures: int
+    steps: bool
+
+    def table(self, random: np.random.Generator, pictures: int) -> Floats:
+        """People x pictures."""
+        means = 4 + PICTURE_SD * random.standard_normal(pictures)
+        person = PERSON_SD * random.standard_normal((self.people, 1))
+        latent = means + person + NOISE_SD * random.standard_normal((self.people, pictures))
+        return np.clip(np.rint(latent), 1, STEPS) if self.steps else latent
+
+    def frame(self, random: np.random.Generator) -> pd.DataFrame:
+        """One study: `participant, condition` (the picture), `rating`."""
+        who, what = np.indices((self.people, self.pictures))
+        ratings = self.table(random, self.pictures).ravel()
+        return pd.DataFrame({"participant": who.ravel(), "condition": what.ravel(), "rating": ratings})
+
+    @cached_property
+    def icc(self) -> float:
+        """ICC(A,1): the share of a rating's variance that is the picture's, of rounded answers by quadrature."""
+        if not self.steps:
+            return PICTURE_SD**2 / (PICTURE_SD**2 + PERSON_SD**2 + NOISE_SD**2)
+        nodes, weights = np.polynomial.hermite_e.hermegauss(80)
+        given = expected(4 + PICTURE_SD * nodes, np.hypot(PERSON_SD, NOISE_SD))
+        between = float(np.average((given - 4) ** 2, weights=weights))
+        edges = np.arange(1, STEPS) + 0.5
+        above = stats.norm.sf((edges - 4) / np.sqrt(PICTURE_SD**2 + PERSON_SD**2 + NOISE_SD**2))
+        squares = 1 + float((above * (2 * np.arange(2, STEPS + 1) - 1)).sum())  # E x^2 = sum of (2r - 1) P(x >= r)
+        return between / (squares - 16)
+
+    @cached_property
+    def alpha(self) -> float:
+        """Krippendorff's ordinal alpha of a thousand people and 3000 pictures."""
+        many = replace(self, people=1000).table(np.random.default_rng(2011), 3000)
+        return KrippendorffAlpha("rating", "condition", "participant").alpha(many)
+
+
+def agreement(frame: pd.DataFrame, gallery: Gallery) -> dict[str, bool]:
+    """Both coefficients of agreement; alpha's bootstrap with fewer resamples than the report's 1000."""
+    icc = IntraclassCorrelation("rating", "condition", "participant")(frame).set_index("type").loc["ICC(A,1)"]
+    found = {"95% CI of ICC(A,1)": covers(icc, gallery.icc)}
+    if gallery.steps:
+        alpha = KrippendorffAlpha("rating", "condition", "participant", resamples=200)(frame).iloc[0]
+        found["95% CI of Krippendorff's alpha, bootstrap"] = covers(alpha, gallery.alpha)
+    return found
+
+
+def covers(row: "pd.Series[float]", truth: float) -> bool:
+    """Whether `ci_low` to `ci_high` holds the truth."""
+    return bool(row["ci_low"] <= truth <= row["ci_high"])
+
+
+def covers_pairs(table: pd.DataFrame, crowd: Crowd) -> bool:
+    """Whether every pair's interval holds the true difference."""
+    truth = dict(zip((f"M{place}" for place in range(1, len(crowd.means) + 1)), crowd.truth, strict=True))
+    return all(covers(row, truth[row["a"]] - truth[row["b"]]) for _, row in table.iterrows())
