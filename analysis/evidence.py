@@ -5,12 +5,16 @@ from dataclasses import dataclass
 
 import pandas as pd
 
+from analysis.families import adjusted
 from analysis.plan import AnalysisPlan, Mode
 from analysis.results import Analysed, analyse
 from analysis.rows import rows_of
 from analysis.sample import Sample
 from analysis.study import StudyInfo
 
+BETWEEN = (
+    "Interactions are not tested between people: each factor is analysed by itself, over the pictures of its levels."
+)
 Progress = Callable[[int, int, str], None]
 
 
@@ -37,12 +41,16 @@ def gather(
     """All rows of the study analysed. `progress(done, total, what)` is called before each analysis and at the end."""
     rows, notes = rows_of(study, plan, sample.ratings)
     other: Mode = "independent" if sample.mode == "repeated" else "repeated"
-    jobs = [(row, mode) for mode in (sample.mode, other) for row in rows]
+    if sample.mode == "independent" and any(row.kind == "interaction" for row in rows):
+        notes.append(BETWEEN)
+    between = [row for row in rows if row.kind != "interaction"]
+    jobs = [(row, mode) for mode in (sample.mode, other) for row in (rows if mode == "repeated" else between)]
     tell = progress or (lambda done, total, what: None)
     found = []
     for done, (row, mode) in enumerate(jobs):
         tell(done, len(jobs), row.title)
         found.append(analyse(row, sample, plan, mode))
     tell(len(jobs), len(jobs), "writing")
-    main, rest = found[: len(rows)], found[len(rows) :]
-    return Evidence(study, plan, sample, ratings, tuple(main), tuple(rest), tuple(notes))
+    main = adjusted([each for each in found if each.mode == sample.mode], plan)
+    rest = tuple(each for each in found if each.mode == other)
+    return Evidence(study, plan, sample, ratings, main, rest, tuple(notes))

@@ -1,6 +1,6 @@
 """Every declared analysis run, in both modes; what has no value is said in a sentence."""
 
-from collections.abc import Callable, Iterable
+from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Any
 
@@ -11,36 +11,55 @@ from analysis.rows import Row
 from analysis.sample import Sample
 from analysis.statistics.anova import OneWayAnova, RepeatedMeasuresAnova
 from analysis.statistics.contrasts import PairedContrasts
+from analysis.statistics.factorial import FactorialAnova
 from analysis.statistics.friedman import Friedman
 from analysis.statistics.intervals import MeanIntervals
+from analysis.statistics.simple_effects import SimpleEffects
 from analysis.statistics.tukey import TukeyHSD
 from analysis.statistics.undefined import Undefined
 from analysis.statistics.wilcoxon import SignedRanks
-from analysis.wording import thesis_verdict
 
 METHODS: dict[Mode, str] = {"repeated": "repeated measures", "independent": "independent samples"}
 
 
 @dataclass(frozen=True)
 class Analysed:
-    """One row in one mode. `anova` is None where it has no value, and `trouble` then says why."""
+    """One row in one mode. `anova` is None where it has no value, and `trouble` then says why.
+
+    `p_holm`, `p_fdr`: its p adjusted over the declared family; None where it has no p and in the mode that is not the
+    design's. `simple`: the simple effects of an interaction, which has no Tukey, no ranks and no contrasts.
+    """
 
     row: Row
     mode: Mode
     n: tuple[int, ...]
     means: pd.DataFrame | None
     anova: dict[str, Any] | None
-    tukey: pd.DataFrame | None
-    friedman: dict[str, Any] | None
-    wilcoxon: dict[str, Any] | None
-    contrasts: pd.DataFrame | None
     answers: pd.DataFrame
-    trouble: tuple[str, ...]
+    tukey: pd.DataFrame | None = None
+    friedman: dict[str, Any] | None = None
+    wilcoxon: dict[str, Any] | None = None
+    contrasts: pd.DataFrame | None = None
+    simple: pd.DataFrame | None = None
+    trouble: tuple[str, ...] = ()
+    p_holm: float | None = None
+    p_fdr: float | None = None
 
     @property
     def p(self) -> float | None:
-        """The p value that decides: Greenhouse-Geisser corrected within people, plain between them."""
+        """The p value of the test: Greenhouse-Geisser corrected within people, plain between them; not adjusted."""
         return None if self.anova is None else float(self.anova["p_gg" if self.mode == "repeated" else "p"])
+
+    def deciding_p(self, plan: AnalysisPlan) -> float | None:
+        """The p value that `[analysis] adjust` calls for."""
+        return {"none": self.p, "holm": self.p_holm, "fdr": self.p_fdr}[plan.adjust]
+
+    @property
+    def df(self) -> tuple[float, float]:
+        """Degrees of freedom that belong to `p`."""
+        assert self.anova is not None
+        shrink = float(self.anova["epsilon_gg"]) if self.mode == "repeated" else 1.0
+        return float(self.anova["df1"]) * shrink, float(self.anova["df2"]) * shrink
 
     @property
     def rank_p(self) -> float | None:
@@ -70,46 +89,87 @@ class Analysed:
         return float(first["critical_05"]), float(first["critical_01"])
 
 
-def analyse(row: Row, sample: Sample, plan: AnalysisPlan, mode: Mode) -> Analysed:
-    """All statistics of `row` in `mode`."""
-    cells = row.cells(sample.ratings)
-    cells["condition"] = pd.Categorical(cells["condition"], [level.code for level in row.levels])
-    subject = "participant" if mode == "repeated" else None
-    trouble: list[str] = []
+Statistic = Callable[[pd.DataFrame], pd.DataFrame]
 
-    def attempt(statistic: Callable[[pd.DataFrame], pd.DataFrame]) -> pd.DataFrame | None:
+
+class Attempts:
+    """Statistics tried one after the other; the sentences on those without a value are kept."""
+
+    def __init__(self, where: str) -> None:
+        self.where = where
+        self.trouble: list[str] = []
+
+    def __call__(self, statistic: Statistic, frame: pd.DataFrame) -> pd.DataFrame | None:
+        """The table, or None and one more sentence."""
         try:
-            return statistic(cells)
+            return statistic(frame)
         except Undefined as reason:
-            trouble.append(f"{row.title} ({METHODS[mode]}): {reason}")
+            self.trouble.append(f"{self.where}: {reason}")
             return None
 
-    friedman = wilcoxon = contrasts = None
-    if subject is None:
-        anova = attempt(OneWayAnova("rating", "condition"))
-    else:
-        anova = attempt(RepeatedMeasuresAnova("rating", "condition", subject))
-    if subject is not None and anova is not None:
-        if anova["k"].iloc[0] > 2:
-            friedman = attempt(Friedman("rating", "condition", subject))
-        else:
-            wilcoxon = attempt(SignedRanks("rating", "condition", subject))
-        contrasts = attempt(PairedContrasts("rating", "condition", subject, plan.confidence))
-    tukey = attempt(TukeyHSD("rating", "condition", subject, plan.confidence)) if anova is not None else None
-    means = MeanIntervals("rating", "condition", subject if anova is not None else None, plan.confidence)(cells)
-    return Analysed(
-        row,
-        mode,
-        sizes(cells, anova),
-        means,
-        first_row(anova),
-        tukey,
-        first_row(friedman),
-        first_row(wilcoxon),
-        contrasts,
-        cells,
-        tuple(trouble),
+
+def analyse(row: Row, sample: Sample, plan: AnalysisPlan, mode: Mode) -> Analysed:
+    """All statistics of `row` in `mode`. An interaction has them within people alone."""
+    attempt = Attempts(f"{row.title} ({METHODS[mode]})")
+    cells = row.cells(sample.ratings)
+    cells["condition"] = pd.Categorical(cells["condition"], [level.code for level in row.levels])
+    effect = effect_in_factorial(row, sample.ratings) if mode == "repeated" else None
+    if row.crossed is not None and isinstance(effect, dict):
+        cells = cells[cells["participant"].isin(row.crossed.complete(sample.ratings))]
+    if row.kind == "interaction":
+        return analyse_interaction(row, sample, plan, mode, cells, effect)
+    subject = "participant" if mode == "repeated" else None
+    one_way: Statistic = OneWayAnova("rating", "condition")
+    if subject is not None:
+        one_way = RepeatedMeasuresAnova("rating", "condition", subject)
+    anova = attempt(one_way, cells)
+    found: dict[str, Any] = {}
+    if anova is not None:
+        if subject is not None:
+            ranks = Friedman if anova["k"].iloc[0] > 2 else SignedRanks
+            name = "friedman" if ranks is Friedman else "wilcoxon"
+            found[name] = first_row(attempt(ranks("rating", "condition", subject), cells))
+            contrasts = PairedContrasts("rating", "condition", subject, plan.confidence, plan.contrasts)
+            found["contrasts"] = attempt(contrasts, cells)
+        found["tukey"] = attempt(TukeyHSD("rating", "condition", subject, plan.confidence), cells)
+    found["means"] = MeanIntervals("rating", "condition", subject if anova is not None else None, plan.confidence)(
+        cells
     )
+    found["n"] = sizes(cells, anova)
+    found["anova"] = effect if anova is not None and isinstance(effect, dict) else first_row(anova)
+    return Analysed(row, mode, answers=cells, trouble=tuple(attempt.trouble), **found)
+
+
+def effect_in_factorial(row: Row, ratings: pd.DataFrame) -> dict[str, Any] | str | None:
+    """A main effect or an interaction with the error terms of the whole factorial, or the sentence why it has no value;
+    None for a row that is part of no factorial."""
+    if row.crossed is None:
+        return None
+    whole = row.crossed
+    try:
+        table = FactorialAnova(whole.value, whole.names, whole.subject)(whole.frame(ratings))
+    except Undefined as reason:
+        return str(reason)
+    found = first_row(table[table["effect"] == row.name])
+    assert found is not None
+    return found["reason"] or found
+
+
+def analyse_interaction(
+    row: Row, sample: Sample, plan: AnalysisPlan, mode: Mode, cells: pd.DataFrame, effect: dict[str, Any] | str | None
+) -> Analysed:
+    """Cell means, the interaction of the factorial, and its simple effects."""
+    assert row.crossed is not None and effect is not None
+    if isinstance(effect, str):
+        means = MeanIntervals("rating", "condition", None, plan.confidence)(cells)
+        why = f"{row.title} ({METHODS[mode]}): {effect}"
+        return Analysed(row, mode, sizes(cells, None), means, None, cells, trouble=(why,))
+    means = MeanIntervals("rating", "condition", "participant", plan.confidence)(cells)
+    part = row.crossed.of(row.factors)
+    people = sample.ratings["participant"].isin(cells["participant"].unique())
+    simple = SimpleEffects(part.value, part.names, part.subject)(part.frame(sample.ratings[people]))
+    n = (int(effect["n"]),) * len(row.levels)
+    return Analysed(row, mode, n, means, effect, cells, simple=simple)
 
 
 def sizes(cells: pd.DataFrame, anova: pd.DataFrame | None) -> tuple[int, ...]:
@@ -122,77 +182,3 @@ def sizes(cells: pd.DataFrame, anova: pd.DataFrame | None) -> tuple[int, ...]:
 def first_row(table: pd.DataFrame | None) -> dict[str, Any] | None:
     """The only row of a statistic's table."""
     return None if table is None else {str(key): value for key, value in table.iloc[0].items()}
-
-
-def anova_table(found: Iterable[Analysed]) -> pd.DataFrame:
-    """A row per analysis: the `anova` part of results.json."""
-    return pd.DataFrame([anova_entry(each) for each in found])
-
-
-def anova_entry(each: Analysed) -> dict[str, Any]:
-    """Question, factor, method and, where they have a value, the statistics."""
-    entry: dict[str, Any] = {"question": each.row.question, "factor": each.row.name, "method": METHODS[each.mode]}
-    if each.anova is None:
-        nothing = ("F", "df1", "df2", "p", "effect_size", "ci")
-        return {**entry, **dict.fromkeys(nothing), "reason": each.trouble[0]}
-    name, size, low, high = each.effect
-    entry |= {"F": each.anova["F"], "df1": int(each.anova["df1"]), "df2": int(each.anova["df2"]), "p": each.anova["p"]}
-    entry |= {"effect_size": size, "ci": [low, high], "effect_size_name": name, "mse": each.mse, "n": list(each.n)}
-    if each.mode == "repeated":
-        keys = ("epsilon_gg", "p_gg", "epsilon_hf", "p_hf", "mauchly_w", "mauchly_p", "partial_eta_squared", "dropped")
-        entry |= {key: each.anova[key] for key in keys}
-    return entry
-
-
-def tukey_table(found: Iterable[Analysed]) -> pd.DataFrame:
-    """A row per pair of samples: the `tukey` part of results.json."""
-    return pd.DataFrame([entry for each in found if each.tukey is not None for entry in pair_entries(each, each.tukey)])
-
-
-def pair_entries(each: Analysed, table: pd.DataFrame) -> list[dict[str, Any]]:
-    """The pairs of one analysis, by picture (or level) and by sample."""
-    key = {level.code: level.stimuli[0] if len(level.stimuli) == 1 else level.label for level in each.row.levels}
-    head = {"question": each.row.question, "factor": each.row.name, "method": METHODS[each.mode]}
-    return [
-        {
-            **head,
-            "a": key[pair["a"]],
-            "b": key[pair["b"]],
-            "samples": f"{pair['a']} vs {pair['b']}",
-            **{name: pair[name] for name in ("difference", "q", "p", "ci_low", "ci_high")},
-            "verdict": thesis_verdict(pair["difference"], pair["critical_05"], pair["critical_01"]),
-        }
-        for pair in table.to_dict("records")
-    ]
-
-
-def hsd_table(found: Iterable[Analysed]) -> pd.DataFrame:
-    """The unrounded HSD of each analysis: the `hsd` part of results.json."""
-    return pd.DataFrame(
-        [
-            {
-                "question": each.row.question,
-                "factor": each.row.name,
-                "method": METHODS[each.mode],
-                "hsd_05": hsd[0],
-                "hsd_01": hsd[1],
-            }
-            for each in found
-            if (hsd := each.hsd) is not None
-        ]
-    )
-
-
-def means_table(found: Iterable[Analysed]) -> pd.DataFrame:
-    """Mean, interval, SD and n of every sample."""
-    parts = []
-    for each in found:
-        if each.means is None:
-            continue
-        labels = {level.code: level.label for level in each.row.levels}
-        part = each.means.rename(columns={"level": "sample"})
-        part.insert(0, "label", part["sample"].map(labels))
-        for name, value in (("method", METHODS[each.mode]), ("factor", each.row.name), ("question", each.row.question)):
-            part.insert(0, name, value)
-        parts.append(part)
-    return pd.concat(parts, ignore_index=True) if parts else pd.DataFrame()

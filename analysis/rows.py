@@ -2,17 +2,20 @@
 
 from collections.abc import Iterator
 from dataclasses import dataclass
+from itertools import combinations, product
 from typing import Any, Literal
 
 import pandas as pd
 
+from analysis.crossed import Crossed, crossed_of
 from analysis.labels import natural_order
 from analysis.plan import BEST, AnalysisPlan, Comparison
+from analysis.statistics.factorial import CROSS
 from analysis.study import Factor, Picture, StudyInfo
-from analysis.wording import level_text, sentence_case
+from analysis.wording import joined, level_text, sentence_case
 from fakesss.problem import nearest
 
-Kind = Literal["factor", "comparison", "all"]
+Kind = Literal["factor", "interaction", "comparison", "all"]
 
 
 @dataclass(frozen=True)
@@ -27,12 +30,16 @@ class Level:
 
 @dataclass(frozen=True)
 class Row:
-    """One analysis: a question by a factor, or by pictures compared."""
+    """One analysis: a question by a factor, by an interaction of factors ("A × B"; its samples are the combinations of
+    their levels), or by pictures compared. `factors`: their names;
+    `crossed`: the full factorial that a factor or an interaction is part of."""
 
     name: str
     kind: Kind
     question: str
     levels: tuple[Level, ...]
+    crossed: Crossed | None = None
+    factors: tuple[str, ...] = ()
 
     @property
     def title(self) -> str:
@@ -48,11 +55,20 @@ class Row:
 
 
 def rows_of(study: StudyInfo, plan: AnalysisPlan, ratings: pd.DataFrame) -> tuple[list[Row], list[str]]:
-    """Every row by factor and question (as figure 4.5), then comparisons; and sentences on what had to be left out."""
+    """Every row by factor and question (as figure 4.5), interactions, then comparisons; and sentences on what had to be
+    left out."""
     rated = set(ratings["stimulus"])
     questions = [q.name for q in study.questions if q.name in set(ratings["question"])]
-    rows = [row for factor in study.factors for q in questions if (row := factor_row(study, factor, q, rated))]
-    notes: list[str] = []
+    found = {question: crossed_of(study, question, ratings) for question in questions}
+    crossed = {question: made for question, made in found.items() if isinstance(made, Crossed)}
+    notes = lacking({question: made for question, made in found.items() if isinstance(made, str)})
+    rows = [
+        row
+        for factor in study.factors
+        for q in questions
+        if (row := factor_row(study, factor, q, rated, crossed.get(q))) is not None
+    ]
+    rows += interaction_rows(crossed)
     for comparison in declared(study, plan, questions, rated):
         made = comparison_row(study, comparison, ratings)
         if isinstance(made, str):
@@ -64,14 +80,43 @@ def rows_of(study: StudyInfo, plan: AnalysisPlan, ratings: pd.DataFrame) -> tupl
     return rows, notes
 
 
-def factor_row(study: StudyInfo, factor: Factor, question: str, rated: set[str]) -> Row | None:
+def lacking(reasons: dict[str, str]) -> list[str]:
+    """A sentence for each reason why a full factorial has no interactions: question -> reason."""
+    return [
+        f"Interactions on {joined([q for q in reasons if reasons[q] == reason])} are not tested: {reason}; "
+        "the main effects average over unlike sets of pictures."
+        for reason in dict.fromkeys(reasons.values())
+    ]
+
+
+def factor_row(study: StudyInfo, factor: Factor, question: str, rated: set[str], crossed: Crossed | None) -> Row | None:
     """The factor's levels in the order of the design; None where fewer than two were rated."""
     levels: list[Level] = []
     for value in factor.levels:
         stimuli = tuple(p.id for p in study.pictures if in_row(p, factor, value) and p.id in rated)
         if stimuli:
             levels.append(Level(f"M{len(levels) + 1}", level_text(value), stimuli, value))
-    return Row(factor.name, "factor", question, tuple(levels)) if len(levels) > 1 else None
+    return Row(factor.name, "factor", question, tuple(levels), crossed, (factor.name,)) if len(levels) > 1 else None
+
+
+def interaction_rows(crossed: dict[str, Crossed]) -> Iterator[Row]:
+    """Every interaction of two factors, then of three and so on, on each question."""
+    most = max((len(each.factors) for each in crossed.values()), default=0)
+    for order in range(2, most + 1):
+        for question, whole in crossed.items():
+            for names in combinations(whole.names, order):
+                yield interaction_row(question, whole, names)
+
+
+def interaction_row(question: str, whole: Crossed, names: tuple[str, ...]) -> Row:
+    """A sample for each combination of the named factors' levels."""
+    part = whole.of(names)
+    levels: list[Level] = []
+    for values in product(*(factor.levels for factor in part.factors)):
+        texts = tuple(map(level_text, values))
+        stimuli = tuple(picture for picture, cell in part.cells if cell == texts)
+        levels.append(Level(f"M{len(levels) + 1}", ", ".join(texts), stimuli, values))
+    return Row(CROSS.join(names), "interaction", question, tuple(levels), whole, names)
 
 
 def in_row(picture: Picture, factor: Factor, value: Any) -> bool:

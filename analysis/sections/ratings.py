@@ -2,7 +2,7 @@
 
 from analysis.evidence import Evidence
 from analysis.figures.means import comparison_figure, factor_figure
-from analysis.results import means_table
+from analysis.records import means_table
 from analysis.section import Section, rendered
 
 

@@ -4,7 +4,8 @@ from collections.abc import Sequence
 
 from analysis.evidence import Evidence
 from analysis.plan import AnalysisPlan
-from analysis.results import METHODS, Analysed, anova_table, hsd_table, tukey_table
+from analysis.records import anova_table, hsd_table, tukey_table
+from analysis.results import METHODS, Analysed
 from analysis.section import Section, rendered
 from analysis.tables import SHOWN_LEVELS, Table, table_4_4, table_4_5
 
