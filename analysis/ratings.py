@@ -101,7 +101,7 @@ def numeric_ratings(
     if len(bad):
         first, top = bad[0], highest.iloc[bad[0]]
         must = f"a whole number from 1 to {top:g}" if np.isfinite(top) else "a finite number"
-        other = "; another scale is named by --scale" if isinstance(scale, int) and off_scale.iloc[first] else ""
+        other = "; another scale is named by --scale" if isinstance(scale, int) and np.asarray(off_scale)[first] else ""
         raise BadInput(
             f'{path}: line {frame.index[first] + 2}: rating "{text.iloc[first]}": must be {must}, or empty if it is '
             f"missing{other}"
