@@ -1,0 +1,222 @@
+"""Ratings as people's and pictures' own levels around the factors' effects: linear mixed models."""
+
+import warnings
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+import numpy as np
+import numpy.typing as npt
+import pandas as pd
+from statsmodels.regression.linear_model import OLS
+from statsmodels.regression.mixed_linear_model import MixedLM, VCSpec
+
+from analysis.statistics.design_matrix import coding_of, refuse_empty_cells
+from analysis.statistics.undefined import Floats, Undefined, require_columns
+from analysis.statistics.wald import wald_tests
+from analysis.wording import joined
+
+MOST_WORK = 2e8  # about 5 s, measured: see `work`
+WORK_OF_A_PERSON = 2e4
+NOTHING = 1e-5  # a share of the variance this small is a variance of 0, as far as the search can tell
+Codes = npt.NDArray[np.int64]
+
+
+@dataclass(frozen=True)
+class Estimate:
+    """What the likelihood's maximum gives: fixed effects (the constant first), their covariance, and variances.
+
+    `variances`: of each random term that was fitted; `dropped`: terms whose variance was 0.
+    """
+
+    effects: Floats
+    covariance: Floats
+    variances: Mapping[str, float]
+    residual: float
+    dropped: tuple[str, ...]
+
+
+@dataclass(frozen=True)
+class MixedFit:
+    """A fitted model. `tests`: a row per factor and interaction (`term, chi2, df, p`). `variances`: a row per random
+    term and the residual (`term, variance, share`). `cautions`: what was left out of the model, in sentences."""
+
+    tests: pd.DataFrame
+    variances: pd.DataFrame
+    n: int
+    cautions: tuple[str, ...]
+
+
+@dataclass(frozen=True)
+class MixedModel:
+    """Linear mixed model of `value`: fixed `factors`, random intercepts of `participant` and `picture`, crossed; REML.
+
+    `interactions`: with all of them. A column given as None has no random intercept. Tests are Wald's with normal
+    theory (z, chi-squared): without the degrees of freedom of Satterthwaite or Kenward and Roger they are a little too
+    ready to find effects in few people or pictures. Where every cell of the factors is one picture, its variance cannot
+    be told from the fixed effects: the model has none and says so. A variance of 0 is left out and said. Agrees with R
+    `lme4::lmer` (estimates, variances). Not a model of slopes: effects are taken as equal in all people.
+
+    `__call__` returns `fit(frame).tests`. Raises `Undefined` where all ratings are equal, no random term is left, a
+    cell is empty, nothing is left over as residual, the search fails, or the model would take too long.
+    """
+
+    value: str
+    factors: tuple[str, ...]
+    participant: str | None
+    picture: str | None
+    interactions: bool = False
+
+    def __call__(self, frame: pd.DataFrame) -> pd.DataFrame:
+        """The joint Wald test of every term for a long `frame`, one row per rating."""
+        return self.fit(frame).tests
+
+    def fit(self, frame: pd.DataFrame) -> MixedFit:
+        """Tests and variances."""
+        asked = [name for name in (self.participant, self.picture) if name]
+        require_columns(frame, self.value, *self.factors, *asked)
+        present = frame[[self.value, *self.factors, *asked]].dropna()
+        coding = coding_of(present, self.value, self.factors, self.interactions)
+        cells = present[list(self.factors)].drop_duplicates()
+        refuse_empty_cells(coding, cells, self.value)
+        random, cautions = self.estimable(present)
+        columns = coding.terms[-1].columns.stop + 1
+        refuse_work(self.title, len(present), columns, random)
+        place = present.groupby(list(self.factors), observed=True, sort=False).ngroup().to_numpy()
+        fixed = np.column_stack([np.ones(len(cells)), coding.matrix(cells)])[place]
+        found = estimate(self.title, present[self.value].to_numpy(float), fixed, random)
+        cautions += [f"{self.title}: the variance of {name}s is 0; fitted without it." for name in found.dropped]
+        tests = wald_tests(coding, found.effects[1:], found.covariance[1:, 1:], self.title, None, 0)
+        return MixedFit(tests, variance_table(found, tuple(random)), len(present), tuple(cautions))
+
+    @property
+    def title(self) -> str:
+        """rating by thickness and backlight."""
+        return f"{self.value} by {' and '.join(self.factors)}"
+
+    def estimable(self, present: pd.DataFrame) -> tuple[dict[str, Codes], list[str]]:
+        """The random terms that these ratings can tell apart, coded; and why one cannot be."""
+        random, cautions = {}, []
+        if self.participant is not None:
+            codes = codes_of(present[self.participant])
+            if repeats(codes):
+                random[self.participant] = codes
+            else:
+                cautions.append(
+                    f"{self.title}: no {self.participant} gave two ratings, so {self.participant}s have no variance."
+                )
+        if self.picture is not None:
+            codes = codes_of(present[self.picture])
+            cells = present.groupby(list(self.factors), observed=True).ngroups
+            pictures = present.groupby([*self.factors, self.picture], observed=True).ngroups
+            if pictures == cells:
+                cautions.append(
+                    f"{self.title}: every cell is one {self.picture}, so the variance of {self.picture}s cannot be "
+                    "told from the factors' effects; the model has none."
+                )
+            elif repeats(codes):
+                random[self.picture] = codes
+            else:
+                cautions.append(
+                    f"{self.title}: no {self.picture} has two ratings, so {self.picture}s have no variance."
+                )
+        if not random:
+            raise Undefined(f"{' '.join(cautions)} No random term is left: the analysis of variance is the model")
+        return random, cautions
+
+
+def codes_of(column: "pd.Series[str]") -> Codes:
+    """Labels as numbers from 0, in the order in which they occur."""
+    return np.asarray(pd.factorize(column)[0], dtype=np.int64)
+
+
+def repeats(codes: Codes) -> bool:
+    """Whether there are at least two labels, and one that occurs twice."""
+    return 0 < int(codes.max()) < len(codes) - 1
+
+
+def work(rows: int, columns: int, random: Mapping[str, Codes]) -> float:
+    """Rows times squared columns of the matrices statsmodels handles: with one random term person by person."""
+    levels = [int(codes.max()) + 1 for codes in random.values()]
+    if len(levels) == 1:
+        return float(rows) * (columns + 1) ** 2 + WORK_OF_A_PERSON * levels[0]
+    return float(rows) * (columns + sum(levels)) ** 2
+
+
+def refuse_work(title: str, rows: int, columns: int, random: Mapping[str, Codes]) -> None:
+    """`Undefined` for a model that would take minutes."""
+    if work(rows, columns, random) > MOST_WORK:
+        size = joined([f"{int(codes.max()) + 1} {name}s" for name, codes in random.items()])
+        raise Undefined(
+            f"{title}: a mixed model of {rows} ratings, {columns} fixed effects and {size} would take minutes, so it "
+            "is not fitted"
+        )
+
+
+def estimate(title: str, values: Floats, fixed: Floats, random: Mapping[str, Codes]) -> Estimate:
+    """The REML estimate; a random term whose variance is 0 is dropped, and the model fitted again without it.
+
+    `values` are centred and scaled first: statsmodels' search and its limits are made for variances near 1. Raises
+    `Undefined` where there is nothing to estimate.
+    """
+    centred = values - values[0]
+    centred = centred - centred.mean()
+    spread = float(np.sqrt(np.mean(centred**2)))
+    if spread == 0:
+        raise Undefined(f"{title}: all ratings are equal, so there is no variance to divide")
+    if len(values) <= fixed.shape[1]:
+        raise Undefined(f"{title}: {len(values)} ratings for {fixed.shape[1]} fixed effects; nothing is left over")
+    terms, dropped = dict(random), []
+    while True:
+        effects, covariance, variances, residual = searched(title, centred / spread, fixed, terms)
+        total = sum(variances.values()) + residual
+        smallest = min(variances, key=lambda name: variances[name], default=None)
+        if smallest is None or variances[smallest] > NOTHING * total:
+            break
+        dropped.append(smallest)
+        del terms[smallest]
+    if not residual > 1e-8 * total:
+        raise Undefined(f"{title}: the model leaves no residual, so there is nothing to test effects against")
+    scaled = {name: variance * spread**2 for name, variance in variances.items()}
+    return Estimate(effects * spread, covariance * spread**2, scaled, residual * spread**2, tuple(dropped))
+
+
+def searched(
+    title: str, values: Floats, fixed: Floats, random: Mapping[str, Codes]
+) -> tuple[Floats, Floats, dict[str, float], float]:
+    """Fixed effects, their covariance, variances and residual variance, from statsmodels."""
+    if not random:
+        plain = OLS(values, fixed).fit()
+        return plain.params, plain.cov_params(), {}, float(plain.scale)
+    with warnings.catch_warnings(), np.errstate(all="ignore"):
+        warnings.simplefilter("ignore")  # boundary and convergence are looked at below
+        try:
+            found = model_of(values, fixed, random).fit(reml=True, method=["bfgs", "lbfgs", "cg"], gtol=1e-8)
+        except (np.linalg.LinAlgError, ValueError):
+            raise Undefined(f"{title}: the model's matrices are singular, so it has no estimate") from None
+    parts = [float(found.cov_re[0, 0])] if len(random) == 1 else [float(part) for part in found.vcomp]
+    count = fixed.shape[1]
+    effects, covariance = np.asarray(found.fe_params), np.asarray(found.cov_params())[:count, :count]
+    if not (np.isfinite([*parts, found.scale, *effects]).all() and np.isfinite(covariance).all()):
+        raise Undefined(f"{title}: the model's matrices are singular, so it has no estimate")
+    # at a variance of 0 the search may end without its gradient's leave; the fit without the term then decides
+    if not found.converged and min(parts) > NOTHING * (sum(parts) + found.scale):
+        raise Undefined(f"{title}: the search for the likelihood's maximum did not converge")
+    return effects, covariance, dict(zip(random, parts, strict=True)), float(found.scale)
+
+
+def model_of(values: Floats, fixed: Floats, random: Mapping[str, Codes]) -> MixedLM:
+    """One random term: its labels are the groups. Several: crossed variance components within a single group."""
+    if len(random) == 1:
+        return MixedLM(values, fixed, groups=next(iter(random.values())))
+    columns = [np.eye(int(codes.max()) + 1)[codes] for codes in random.values()]
+    names = [[[f"{name}{place}" for place in range(part.shape[1])]] for name, part in zip(random, columns, strict=True)]
+    spec = VCSpec(list(random), names, [[part] for part in columns])
+    return MixedLM(values, fixed, groups=np.zeros(len(values)), exog_vc=spec)
+
+
+def variance_table(found: Estimate, terms: tuple[str, ...]) -> pd.DataFrame:
+    """`term, variance, share` of the random terms (0 for those dropped) and of the residual."""
+    parts = {name: found.variances.get(name, 0.0) for name in terms} | {"residual": found.residual}
+    total = sum(parts.values())
+    rows = [{"term": name, "variance": part, "share": part / total} for name, part in parts.items()]
+    return pd.DataFrame(rows)
