@@ -15,6 +15,11 @@ from analysis.sentences import ordered_means
 from analysis.study import Question, StudyInfo
 from analysis.wording import sentence_case
 
+ACROSS = 3
+"""Questions beside each other in a figure: more would be too small on a page."""
+SIDE_BY_SIDE, PICTURED, ENDS_SHOWN = 12, 8, 3
+"""Pictures compared in a panel, levels of a factor with thumbnails, pictures named at each end of a long row."""
+
 
 def interval_name(mode: str, confidence: float) -> str:
     """The kind of interval, for captions."""
@@ -22,22 +27,33 @@ def interval_name(mode: str, confidence: float) -> str:
     return f"{confidence:.0%} {kind} confidence interval"
 
 
-def factor_figure(study: StudyInfo, found: Sequence[Analysed], confidence: float) -> Drawing | None:
-    """Figure 4.5: a factor per row, a question per column. None without factor rows."""
+def factor_figures(study: StudyInfo, found: Sequence[Analysed], confidence: float) -> list[Drawing]:
+    """Figure 4.5: a factor per row, a question per column; of more than three questions a figure for every three."""
     mine = [each for each in found if each.row.kind == "factor" and each.means is not None]
+    questions = list(dict.fromkeys(each.row.question for each in mine))
+    parts = [questions[i : i + ACROSS] for i in range(0, len(questions), ACROSS)]
+    return [
+        factor_figure(study, [each for each in mine if each.row.question in part], confidence, f"-{i}" if i > 1 else "")
+        for i, part in enumerate(parts, 1)
+    ]
+
+
+def factor_figure(study: StudyInfo, mine: Sequence[Analysed], confidence: float, suffix: str) -> Drawing:
+    """Figure 4.5 of up to three questions."""
     factors = list(dict.fromkeys(each.row.name for each in mine))
     questions = list(dict.fromkeys(each.row.question for each in mine))
-    if not mine:
-        return None
     with mpl.rc_context(STYLE):
         figure = Figure(
-            figsize=(3.1 * len(questions) + 0.5, 3.3 * len(factors) + 0.3),
+            figsize=(panel_width(mine) * len(questions) + 0.5, 3.3 * len(factors) + 0.3),
             layout=ConstrainedLayoutEngine(h_pad=0.12, w_pad=0.06),
         )
         grid = figure.subplots(len(factors), len(questions), sharey="row", squeeze=False)
+        for axes in grid.ravel():
+            axes.set_axis_off()
         for each in mine:
             row, column = factors.index(each.row.name), questions.index(each.row.question)
             axes = grid[row][column]
+            axes.set_axis_on()
             draw_means(axes, each, study, COLOURS[row % len(COLOURS)])
             axes.set_xlabel(each.row.name)
             if row == 0:
@@ -47,14 +63,20 @@ def factor_figure(study: StudyInfo, found: Sequence[Analysed], confidence: float
             f"Mean ratings by factor (rows) and question (columns). {answer_scale(study.question(questions[0]))}"
             f"Bars: {interval_name(mine[0].mode, confidence)}. Grey discs: all answers, area by their share."
         )
-        return drawn(figure, "figure-4-5-factors", caption)
+        return drawn(figure, f"figure-4-5-factors{suffix}", caption)
 
 
-def comparison_figure(study: StudyInfo, found: Sequence[Analysed], confidence: float) -> Drawing | None:
-    """Figure 4.6: the compared pictures side by side. None without comparisons."""
+def comparison_figures(study: StudyInfo, found: Sequence[Analysed], confidence: float) -> list[Drawing]:
+    """Figure 4.6: the compared pictures side by side; of more than twelve their means in order."""
     mine = [each for each in found if each.row.kind != "factor" and each.means is not None]
-    if not mine:
-        return None
+    few = [each for each in mine if len(each.row.levels) <= SIDE_BY_SIDE]
+    many = [each for each in mine if len(each.row.levels) > SIDE_BY_SIDE]
+    figures = [comparison_figure(study, few, confidence)] if few else []
+    return figures + [ranked_figure(study, each, confidence, i) for i, each in enumerate(many, 1)]
+
+
+def comparison_figure(study: StudyInfo, mine: Sequence[Analysed], confidence: float) -> Drawing:
+    """Figure 4.6 of up to twelve pictures."""
     with mpl.rc_context(STYLE):
         most = max(len(each.row.levels) for each in mine)
         width = max(4.2, 0.95 * most + 1.2)
@@ -79,6 +101,64 @@ def comparison_figure(study: StudyInfo, found: Sequence[Analysed], confidence: f
         return drawn(figure, "figure-4-6-comparison", caption)
 
 
+def ranked_figure(study: StudyInfo, each: Analysed, confidence: float, number: int) -> Drawing:
+    """Many pictures of one question from the lowest mean to the highest; the pictures at both ends are shown."""
+    assert each.means is not None
+    table = each.means.sort_values("mean", kind="stable")
+    by_code = {level.code: level for level in each.row.levels}
+    places = np.arange(len(table))
+    with mpl.rc_context(STYLE):
+        figure = Figure(figsize=(9.5, 3.6), layout=ConstrainedLayoutEngine(h_pad=0.12, w_pad=0.06))
+        axes = figure.subplots()
+        half = (table["ci_high"] - table["mean"]).fillna(0.0)
+        axes.vlines(
+            places, table["mean"] - half, table["mean"] + half, color="#9cc3e0", linewidth=min(2.0, 300 / len(table))
+        )
+        axes.plot(
+            places, table["mean"], color=COLOURS[0], marker="o", markersize=min(4.0, 600 / len(table)), linestyle="none"
+        )
+        ends = [*range(ENDS_SHOWN), *range(len(table) - ENDS_SHOWN, len(table))]
+        for end, place in enumerate(spread_out(ends, len(table))):
+            level = by_code[str(table["level"].iloc[ends[end]])]
+            file = study.picture(level.stimuli[0]).file
+            if file is not None and file.is_file():
+                place_thumbnail(axes, place, file)
+            axes.annotate(
+                folded(level.label), (place, 0), (0, -44), xycoords=("data", "axes fraction"), textcoords="offset points",
+                ha="center", va="top", fontsize=7,
+            )  # fmt: skip
+        axes.set_xticks([])
+        axes.set_xlim(-0.02 * len(table), 1.02 * len(table))
+        axes.set_title(
+            sentence_case(each.row.name if each.row.kind == "comparison" else each.row.question), fontweight="bold"
+        )
+        label_scale(axes, study.question(each.row.question), named=True)
+        caption = (
+            f"Mean ratings of “{each.row.question}”: {len(table)} pictures from the lowest mean to the highest, the "
+            f"{ENDS_SHOWN} at either end named. {answer_scale(study.question(each.row.question))}"
+            f"Bars: {interval_name(each.mode, confidence)}. Every mean stands in tables/means.csv."
+        )
+        return drawn(figure, f"figure-ranked-{number}", caption)
+
+
+def spread_out(ends: Sequence[int], total: int) -> list[float]:
+    """Places for the thumbnails of both ends that do not overlap: a fourteenth of the axis each."""
+    half = len(ends) // 2
+    low = [(i + 0.5) * total / 14 for i in range(half)]
+    return [*low, *(total - place for place in reversed(low))]
+
+
+def panel_width(mine: Sequence[Analysed]) -> float:
+    """Inches of a panel: wider for more levels."""
+    return float(np.clip(0.45 * max(len(each.row.levels) for each in mine), 3.1, 4.4))
+
+
+def thinned(axes: Axes, labels: Sequence[str]) -> None:
+    """Labels below the places 0, 1, ...; of many every so-manieth, so that they do not run into each other."""
+    step = -(-sum(len(label) + 2 for label in labels) // 52)
+    axes.set_xticks(range(0, len(labels), step), labels[::step])
+
+
 def draw_means(axes: Axes, each: Analysed, study: StudyInfo, colour: str, joined: bool = True) -> None:
     """Means with intervals over the distribution of answers; below, the pictures and their levels."""
     table = ordered_means(each)
@@ -96,11 +176,14 @@ def draw_means(axes: Axes, each: Analysed, study: StudyInfo, colour: str, joined
     for place, code in zip(places, table["level"], strict=True):
         level = by_code[str(code)]
         file = study.picture(level.stimuli[0]).file if len(level.stimuli) == 1 else None
-        if file is not None and file.is_file():
-            place_thumbnail(axes, float(place), file)
+        if file is not None and file.is_file() and (each.row.kind != "factor" or len(table) <= PICTURED):
+            place_thumbnail(axes, float(place), file, 36 if each.row.kind != "factor" else min(36, 175 / len(table)))
         labels.append(level.label if each.row.kind == "factor" else f"{level.code}\n{folded(level.label)}")
     pad = 42 if any(isinstance(artist, AnnotationBbox) for artist in axes.artists) else 4
-    axes.set_xticks(places, labels)
+    if each.row.kind == "factor":
+        thinned(axes, labels)
+    else:
+        axes.set_xticks(places, labels)
     axes.tick_params(axis="x", length=0, pad=pad)
 
 
