@@ -13,6 +13,8 @@ from pandas.errors import Pandas4Warning
 
 from analysis.statistics.undefined import Undefined, complete_table, require_columns
 
+MOST = 10**8  # numbers that krippendorff holds at once (pictures x values x values): 0.8 GB
+
 
 @dataclass(frozen=True)
 class IntraclassCorrelation:
@@ -67,7 +69,8 @@ class KrippendorffAlpha:
 
     Returns one row: `alpha, ci_low, ci_high` (95%, percentile), `level, n_targets, n_raters`. `seed` fixes the
     bootstrap. Agrees with R `irr::kripp.alpha`. Krippendorff (2011). Raises `Undefined` where fewer than two raters
-    share a picture, and where all ratings are equal.
+    share a picture, where all ratings are equal, and where there are more different ratings than the library can hold
+    (more than 447 on 500 pictures).
     """
 
     value: str
@@ -87,15 +90,24 @@ class KrippendorffAlpha:
             raise Undefined(f"{where}: no {self.target} was rated by two {self.rater}s, so agreement has no value")
         if np.nanmin(data) == np.nanmax(data):
             raise Undefined(f"{where}: all ratings are equal, so agreement has no value")
+        values = np.unique(data[~np.isnan(data)])
+        if data.shape[1] * len(values) ** 2 > MOST:
+            raise Undefined(
+                f"{where}: {len(values)} different ratings of {data.shape[1]} {self.target}s are too many to compare "
+                "each with each, so Krippendorff's alpha has no value; round the ratings to fewer steps"
+            )
+        # of each picture alpha needs only how often each answer was given: a thousand resamples of that are quick
+        counts = np.stack([(data == value).sum(axis=0) for value in values], axis=1)
         random = np.random.default_rng(self.seed)
-        draws = random.integers(0, data.shape[1], (self.resamples, data.shape[1]))
-        resampled = [self.alpha(data[:, draw]) for draw in draws]
+        draws = random.integers(0, len(counts), (self.resamples, len(counts)))
+        resampled = [self.alpha(counts[draw], values) for draw in draws]
         low, high = np.nanquantile(resampled, [0.025, 0.975])
-        row = {"alpha": self.alpha(data), "ci_low": float(low), "ci_high": float(high), "level": self.level}
+        row = {"alpha": self.alpha(counts, values), "ci_low": float(low), "ci_high": float(high), "level": self.level}
         return pd.DataFrame([{**row, "n_targets": data.shape[1], "n_raters": data.shape[0]}])
 
-    def alpha(self, data: npt.NDArray[np.float64]) -> float:
-        """Alpha of a raters x pictures table; NaN for a resample of one value only."""
-        if np.nanmin(data) == np.nanmax(data):
+    def alpha(self, counts: npt.NDArray[np.int64], values: npt.NDArray[np.float64]) -> float:
+        """Alpha of how often each of `values` was given to each picture (pictures x values); NaN for one value only."""
+        if np.count_nonzero(counts.sum(axis=0)) < 2:
             return float("nan")
-        return float(krippendorff.alpha(reliability_data=data, level_of_measurement=self.level))
+        found = krippendorff.alpha(value_counts=counts, value_domain=values, level_of_measurement=self.level)
+        return float(found)
