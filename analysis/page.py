@@ -8,6 +8,7 @@ from analysis.results import METHODS
 from analysis.script import SCRIPT, script_source
 from analysis.section import TEMPLATES, Section
 from analysis.sections.agreement import agreement
+from analysis.sections.equivalence import equivalence
 from analysis.sections.people import people
 from analysis.sections.pictures import pictures
 from analysis.sections.ratings import ratings
@@ -16,7 +17,15 @@ from analysis.sections.thesis import thesis
 from analysis.sentences import apa_sentence, findings
 from analysis.wording import counted
 
-SECTIONS: tuple[Callable[[Evidence], Section | None], ...] = (people, pictures, ratings, thesis, tests, agreement)
+SECTIONS: tuple[Callable[[Evidence], Section | None], ...] = (
+    people,
+    pictures,
+    ratings,
+    thesis,
+    tests,
+    equivalence,
+    agreement,
+)
 """In the order of the page."""
 
 

@@ -1,0 +1,128 @@
+"""Are pictures rated alike? Two one-sided tests against the declared margin; without a margin no such claim is made."""
+
+from collections import Counter
+from collections.abc import Sequence
+from typing import Any
+
+from analysis.evidence import Evidence
+from analysis.figures.equivalence import equivalence_figures
+from analysis.margins import Judged, equivalence_table, judge
+from analysis.plan import EquivalencePlan
+from analysis.section import Section, rendered
+from analysis.statistics.equivalence import UNTESTED
+from analysis.tables import Table
+from analysis.wording import apa_df, apa_p, counted, joined, sentence_case, signed, thesis_p
+
+NAMED = 3  # pairs that a sentence names; more are counted
+PASTED = 10  # pairs that a sentence to paste holds
+WORDS = {
+    "equivalent": "alike",
+    "both": "different by less than the margin",
+    "different": "different",
+    "undecided": "undecided",
+    UNTESTED: "without a test",
+}
+
+
+def equivalence(evidence: Evidence) -> Section | None:
+    """Every pair's verdict, drawn against the margin. None where the plan declares no margin."""
+    plan = evidence.plan.equivalence
+    if plan is None:
+        return None
+    judged, said = judge(evidence.main, plan)
+    drawings = equivalence_figures(judged, evidence.study)
+    body = rendered(
+        "equivalence",
+        margins=margins(judged),
+        alpha=plan.alpha,
+        level=1 - 2 * plan.alpha,
+        table=table_of_equivalence(judged, plan),
+        drawings=drawings,
+        said=said,
+    )
+    tables = {"equivalence": equivalence_table(judged)}
+    sentences = tuple(apa_equivalence(one) for one in judged)
+    return Section("equivalence", "Equivalence", body, tables, drawings, summaries(judged), sentences, tuple(said))
+
+
+def margins(judged: Sequence[Judged]) -> str:
+    """The margin of every question, in words."""
+    by_question = {one.each.row.question: one.margin for one in judged}
+    if len(set(by_question.values())) == 1:
+        return f"±{next(iter(by_question.values())):g} steps of the scale"
+    return joined([f"±{margin:g} steps for “{question}”" for question, margin in by_question.items()])
+
+
+def summaries(judged: Sequence[Judged]) -> tuple[str, ...]:
+    """One sentence per question: what its pairs turned out to be, the alike ones by name."""
+    said = []
+    for question, margin in dict.fromkeys((one.each.row.question, one.margin) for one in judged):
+        mine = [(one, pair) for one in judged if one.each.row.question == question for pair in one.records]
+        count = Counter(str(pair["verdict"]) for _, pair in mine)
+        parts = [f"{count[verdict]} {words}" for verdict, words in WORDS.items() if count[verdict]]
+        alike = [one.named(pair) for one, pair in mine if pair["verdict"] in ("equivalent", "both")]
+        names = f" Alike: {joined([name.replace(' minus ', ' and ') for name in alike])}." if alike else ""
+        if not alike:
+            names = " No pair was shown to be alike."
+        elif len(alike) > NAMED:
+            names = ""
+        said.append(
+            f"{sentence_case(question)}: of {counted(len(mine), 'pair')}, {joined(parts)} by a margin of "
+            f"±{margin:g} steps.{names}"
+        )
+    return tuple(said)
+
+
+def table_of_equivalence(judged: Sequence[Judged], plan: EquivalencePlan) -> Table | None:
+    """Every pair of the rows that a page can hold."""
+    rows = [
+        (one.each.row.title if place == 0 else "", one.named(pair), str(pair["verdict"]), *cells(pair))
+        for one in judged
+        if one.shown
+        for place, pair in enumerate(one.records)
+    ]
+    interval = f"{1 - 2 * plan.alpha:.0%} CI"
+    head = ("Configuration", "Pair", "Verdict", "Difference", interval, "p TOST", "p TOST, Holm", "p difference")
+    note = (
+        "p TOST: the larger of the two one-sided tests; it decides with p difference, the two-sided t test, each at "
+        f"α = {plan.alpha:g}. Holm: adjusted for the number of pairs of the row. One pair chosen after seeing all "
+        "needs the adjusted p; the claim that all pairs of a row are alike does not."
+    )
+    caption = "Two one-sided tests of every pair"
+    return Table("table-equivalence", caption, head, tuple(rows), text_columns=3, note=note) if rows else None
+
+
+def cells(pair: dict[str, Any]) -> tuple[str, ...]:
+    """The numbers of one pair; dashes where it has no test."""
+    difference = signed(pair["difference"])
+    if pair["verdict"] == UNTESTED:
+        return (difference, *["–"] * 4)
+    interval = f"[{signed(pair['ci_low'])}, {signed(pair['ci_high'])}]"
+    return (difference, interval, *(thesis_p(pair[p]) for p in ("p_equivalence", "p_equivalence_holm", "p_difference")))
+
+
+def apa_equivalence(one: Judged) -> str:
+    """A sentence to paste: the row's pairs with t, df and p of the larger one-sided test, and the interval."""
+    row, first = one.each.row, one.records[0]
+    kind = "paired" if one.each.mode == "repeated" else "Welch’s"
+    people = f"n = {first['n_a']}, " if one.each.mode == "repeated" else ""
+    tested = [pair for pair in one.records if pair["verdict"] != UNTESTED]
+    pasted = tested if len(tested) <= PASTED else [p for p in tested if p["verdict"] in ("equivalent", "both")]
+    level = f"{1 - 2 * one.alpha:.0%} CI"
+    parts = [f"{one.named(pair)}: {apa_pair(pair, level)}" for pair in pasted]
+    if len(pasted) < len(tested):
+        parts.append(f"the other {len(tested) - len(pasted)} pairs were not shown to be equivalent")
+    where = f" ({row.name})" if row.kind == "comparison" else f" by {row.name}"
+    return (
+        f"Two one-sided {kind} t tests ({people}margin ±{one.margin:g}, α = {one.alpha:g}, "
+        f"{counted(len(tested), 'pair')}, p unadjusted) of ratings of “{row.question}”{where}: {'; '.join(parts)}."
+    )
+
+
+def apa_pair(pair: dict[str, Any], level: str) -> str:
+    """M = 0.45, t(43) = −0.14, p = .443, 90% CI [−0.08, 0.99], undecided."""
+    side = "low" if pair["p_low"] >= pair["p_high"] else "high"
+    interval = f"[{signed(pair['ci_low'])}, {signed(pair['ci_high'])}]"
+    test = f"t({apa_df(pair['df'])}) = {signed(pair[f't_{side}'])}, {apa_p(pair['p_equivalence'])}"
+    verdict = {"both": "equivalent and different"}.get(pair["verdict"], pair["verdict"])
+    return f"M = {signed(pair['difference'])}, {test}, {level} {interval}, {verdict}"
