@@ -124,8 +124,8 @@ def ranked_figure(study: StudyInfo, each: Analysed, confidence: float, number: i
             if file is not None and file.is_file():
                 place_thumbnail(axes, place, file)
             axes.annotate(
-                folded(level.label), (place, 0), (0, -44), xycoords=("data", "axes fraction"), textcoords="offset points",
-                ha="center", va="top", fontsize=7,
+                folded(level.label), (place, 0), (0, -44), xycoords=("data", "axes fraction"),
+                textcoords="offset points", ha="center", va="top", fontsize=7,
             )  # fmt: skip
         axes.set_xticks([])
         axes.set_xlim(-0.02 * len(table), 1.02 * len(table))
@@ -203,7 +203,7 @@ def draw_answers(axes: Axes, each: Analysed, codes: list[object]) -> None:
         )
 
 
-def label_scale(axes: Axes, question: Question, named: bool) -> None:
+def label_scale(axes: Axes, question: Question, named: bool, what: str = "mean rating") -> None:
     """The whole scale, its ends named once a row."""
     if question.scale is not None:
         axes.set_ylim(0.6, question.scale + 0.4)
@@ -213,7 +213,7 @@ def label_scale(axes: Axes, question: Question, named: bool) -> None:
     axes.set_axisbelow(True)
     axes.tick_params(axis="y", length=0)
     if named:
-        axes.set_ylabel("mean rating")
+        axes.set_ylabel(what)
 
 
 def answer_scale(question: Question) -> str:
