@@ -117,12 +117,15 @@ def run(study: Path, host: str, port: int, database: str | None, pilot: bool) ->
 
 def serve_study(study: Path, host: str, port: int, database: str | None, pilot: bool) -> None:
     """The survey with the report behind /admin/report, until interrupted."""
+    from analysis.script import script_source
     from fakesss.cli_analysis import report_folder
     from study_server.serve import serve as serve_until_interrupted
 
     mode: Mode = "pilot" if pilot else "live"
     make_report = partial(report_folder, study, database, mode)
-    serve_until_interrupted(study, host, port, database_url=database, mode=mode, make_report=make_report)
+    serve_until_interrupted(
+        study, host, port, database_url=database, mode=mode, make_report=make_report, report_script=script_source()
+    )
 
 
 @commands.command()

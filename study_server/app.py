@@ -31,16 +31,18 @@ def create_app(
     database_url: str | None = None,
     mode: Mode = "live",
     make_report: Callable[[], Path] | None = None,
+    report_script: str = "'none'",
 ) -> FastAPI:
     """The application that serves the built study in `study_folder`; `app.state.site` is its `Site`.
 
-    `database_url` defaults to ratings.sqlite in the folder. `make_report` writes the report and returns its folder.
+    `database_url` defaults to ratings.sqlite in the folder. `make_report` writes the report and returns its folder;
+    `report_script` names the one script its page may run, as a source of a Content-Security-Policy ('sha256-...').
     Raises `BadInput` if the study is not built, study.toml or a picture is not as built, or the database is unusable.
     """
     site = open_site(Path(study_folder), database_url, mode, make_report)
     app = FastAPI(title=site.study.title, docs_url=None, redoc_url=None)
     app.state.site = site
-    app.add_middleware(WebSafety)
+    app.add_middleware(WebSafety, report_script=report_script)
     app.mount("/static", StaticFiles(directory=HERE / "static"))
     app.get("/health")(health)
     for router in (pictures.router, admin.router, participant.router):

@@ -25,12 +25,15 @@ def serve(
     database_url: str | None = None,
     mode: Mode = "live",
     make_report: Callable[[], Path] | None = None,
+    report_script: str = "'none'",
 ) -> None:
     """Serve the built study until interrupted; prints its addresses on standard error. Port 0: any free one.
 
     Raises `BadInput` if the study or its database cannot be used, or the port is taken.
     """
-    app = create_app(study_folder, database_url=database_url, mode=mode, make_report=make_report)
+    app = create_app(
+        study_folder, database_url=database_url, mode=mode, make_report=make_report, report_script=report_script
+    )
     with listening(host, port) as listener:
         announce(app, host, address_of(listener))
         uvicorn.Server(configuration(app)).run(sockets=[listener])
@@ -44,9 +47,12 @@ def served(
     database_url: str | None = None,
     mode: Mode = "live",
     make_report: Callable[[], Path] | None = None,
+    report_script: str = "'none'",
 ) -> Iterator[str]:
     """The same, on this machine only, in a thread for as long as the block runs; gives its address."""
-    app = create_app(study_folder, database_url=database_url, mode=mode, make_report=make_report)
+    app = create_app(
+        study_folder, database_url=database_url, mode=mode, make_report=make_report, report_script=report_script
+    )
     with running(app, port) as url:
         yield url
 

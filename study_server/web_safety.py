@@ -17,10 +17,10 @@ POLICY = (
     "form-action 'self'; base-uri 'none'; frame-ancestors 'none'"
 )
 REPORT_POLICY = (
-    "default-src 'none'; style-src 'self' 'unsafe-inline'; img-src 'self' data:; "
-    "base-uri 'none'; frame-ancestors 'none'"
+    "default-src 'none'; script-src {script}; style-src 'self' 'unsafe-inline'; img-src 'self' data:; "
+    "form-action 'none'; base-uri 'none'; frame-ancestors 'none'"
 )
-"""The report is one file with its own style sheet inside; it may run no script."""
+"""The report is one file with its own style sheet inside; `script` is the one script it may run, named by its hash."""
 
 HEADERS = {
     "X-Content-Type-Options": "nosniff",
@@ -39,17 +39,18 @@ class TooLarge(HTTPException):
 
 
 class WebSafety:
-    """The three checks around an ASGI application."""
+    """The three checks around an ASGI application. `report_script`: the source that pages of the report may run."""
 
-    def __init__(self, app: ASGIApp) -> None:
+    def __init__(self, app: ASGIApp, report_script: str = "'none'") -> None:
         self.app = app
+        self.report_policy = REPORT_POLICY.format(script=report_script)
 
     async def __call__(self, scope: Scope, receive: Receive, send: Send) -> None:
         """Serve one request, or refuse it with 403; while its body is read, with 413."""
         if scope["type"] != "http":
             await self.app(scope, receive, send)
             return
-        send = with_headers(scope, send)
+        send = with_headers(send, self.report_policy if scope["path"].startswith("/admin/report/") else POLICY)
         if scope["method"] not in ("GET", "HEAD", "OPTIONS") and not is_same_origin(Headers(scope=scope)):
             refusal = JSONResponse({"error": "This request came from another site and was refused."}, 403)
             await refusal(scope, receive, send)
@@ -84,9 +85,8 @@ def limited(receive: Receive) -> Callable[[], Awaitable[MutableMapping[str, Any]
     return receive_limited
 
 
-def with_headers(scope: Scope, send: Send) -> Send:
-    """`send` that adds our headers to the response."""
-    policy = REPORT_POLICY if scope["path"].startswith("/admin/report/") else POLICY
+def with_headers(send: Send, policy: str) -> Send:
+    """`send` that adds our headers to the response, `policy` among them."""
 
     async def send_with_headers(message: Message) -> None:
         if message["type"] == "http.response.start":
