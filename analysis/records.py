@@ -80,23 +80,25 @@ def simple_table(found: Iterable[Analysed]) -> pd.DataFrame:
 
 def tukey_table(found: Iterable[Analysed]) -> pd.DataFrame:
     """A row per pair of samples: the `tukey` part of results.json."""
-    return pd.DataFrame([entry for each in found if each.tukey is not None for entry in pair_entries(each, each.tukey)])
+    parts = [pairs_of(each, each.tukey) for each in found if each.tukey is not None]
+    return pd.concat(parts, ignore_index=True) if parts else pd.DataFrame()
 
 
-def pair_entries(each: Analysed, table: pd.DataFrame) -> list[dict[str, Any]]:
-    """The pairs of one analysis, by picture (or level) and by sample."""
+def pairs_of(each: Analysed, table: pd.DataFrame) -> pd.DataFrame:
+    """The pairs of one analysis, by picture (or level) and by sample; 500 pictures have 124,750, so by column."""
     key = {level.code: level.stimuli[0] if len(level.stimuli) == 1 else level.label for level in each.row.levels}
-    return [
+    a, b = list(table["a"]), list(table["b"])
+    limits = (table[name].tolist() for name in ("difference", "critical_05", "critical_01"))
+    return pd.DataFrame(
         {
             **heading(each),
-            "a": key[pair["a"]],
-            "b": key[pair["b"]],
-            "samples": f"{pair['a']} vs {pair['b']}",
-            **{name: pair[name] for name in ("difference", "q", "p", "ci_low", "ci_high")},
-            "verdict": thesis_verdict(pair["difference"], pair["critical_05"], pair["critical_01"]),
+            "a": [key[code] for code in a],
+            "b": [key[code] for code in b],
+            "samples": [f"{first} vs {second}" for first, second in zip(a, b, strict=True)],
+            **{name: table[name] for name in ("difference", "q", "p", "ci_low", "ci_high")},
+            "verdict": [thesis_verdict(*pair) for pair in zip(*limits, strict=True)],
         }
-        for pair in table.to_dict("records")
-    ]
+    )
 
 
 def hsd_table(found: Iterable[Analysed]) -> pd.DataFrame:
