@@ -1,15 +1,14 @@
 """The report: one page to read, tables and figures to reuse, numbers for machines."""
 
-import json
-import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
 import pandas as pd
 
 from analysis.evidence import Progress, gather
-from analysis.figures.style import Drawing, letters_missing
+from analysis.figures.style import letters_missing
+from analysis.files import plain, save
 from analysis.levels import from_ratings, read_levels
 from analysis.page import render_page, sections_of
 from analysis.plan import AnalysisPlan
@@ -86,7 +85,6 @@ def results_json(
         "n_analysed": sample.n_analysed,
         "mode": sample.mode,
         "alpha": plan.alpha,
-        "excluded": [{"participant": who, "reason": why} for who, why in sample.excluded],
         "took_part_twice": [{"participant": who, "session_left_out": name} for who, name in sample.set_aside],
         **{name: plain(table) for name, table in tables.items()},
         "warnings": said,
@@ -109,41 +107,8 @@ def refuse_strangers(study: StudyInfo, frame: pd.DataFrame, ratings: Path) -> No
     """Ratings of none of the study's pictures or questions belong to another study."""
     known = {"stimulus": [p.id for p in study.pictures], "question": [q.name for q in study.questions]}
     for column, names in known.items():
-        if not set(names) & set(frame[column]):
+        if not set(names) & set(frame[column].unique()):
             raise BadInput(
                 f'{ratings}: no {column} of it is in the study (it has "{frame[column].iloc[0]}", the study has '
                 f'"{next(iter(names), "none")}"); are these ratings of another study?'
             )
-
-
-def plain(table: pd.DataFrame) -> list[dict[str, Any]]:
-    """Records that JSON can hold; a number that does not exist is null."""
-    return [{str(key): machine(value) for key, value in row.items()} for row in table.to_dict("records")]
-
-
-def machine(value: Any) -> Any:
-    """Python's own types; NaN becomes None."""
-    if hasattr(value, "item"):
-        value = value.item()
-    return None if isinstance(value, float) and math.isnan(value) else value
-
-
-def save(
-    out: Path, page: str, results: dict[str, Any], tables: Mapping[str, pd.DataFrame], drawings: Sequence[Drawing]
-) -> None:
-    """All files of the report; `BadInput` where the folder cannot be written."""
-    try:
-        for name in ("tables", "figures"):
-            (out / name).mkdir(parents=True, exist_ok=True)
-        for name, table in tables.items():
-            (out / "tables" / f"{name}.csv").write_text(
-                table.to_csv(index=False, lineterminator="\n"), encoding="utf-8"
-            )
-        for drawing in drawings:
-            (out / "figures" / f"{drawing.stem}.svg").write_text(drawing.svg, encoding="utf-8")
-            (out / "figures" / f"{drawing.stem}.png").write_bytes(drawing.png)
-        text = json.dumps(results, indent=2, ensure_ascii=False, allow_nan=False) + "\n"
-        (out / "results.json").write_text(text, encoding="utf-8")
-        (out / "index.html").write_text(page, encoding="utf-8")
-    except OSError as error:
-        raise BadInput(f"{out}: cannot write the report ({error.strerror}); choose a folder you may write to") from None

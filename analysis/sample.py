@@ -7,8 +7,10 @@ import pandas as pd
 
 from analysis.labels import natural_order
 from analysis.plan import AnalysisPlan, Exclusions, Mode
-from analysis.ratings import is_check, is_first_showing, of_one_mode, unguarded
+from analysis.quality import answer_times, answers, failed_checks, same_answer_share
+from analysis.ratings import is_first_showing, of_one_mode, unguarded
 from analysis.sessions import one_session_each
+from analysis.wording import counted
 from fakesss.problem import BadInput
 
 FINISHED = ("completed", "complete", "finished", "true", "yes", "1")
@@ -18,21 +20,38 @@ FINISHED_COLUMNS = ("status", "state", "completed_at", "finished_at", "completed
 
 
 @dataclass(frozen=True)
+class LeftOut:
+    """A participant whose ratings are not analysed. `rule`: a key of `[analysis]` or of `exclude`, or "withdrew"."""
+
+    participant: str
+    rule: str
+    reason: str
+
+
+@dataclass(frozen=True)
 class Sample:
     """The ratings that are analysed, and the account of those that are not.
 
     `ratings` holds first showings only, without missing answers; `everything` also repeats and checks of the same
-    people. `set_aside`: (participant, session) of those who took part twice.
+    people, `of_everyone` those of people left out too. `set_aside`: (participant, session) of those who took part
+    twice.
     """
 
     ratings: pd.DataFrame
     everything: pd.DataFrame
+    of_everyone: pd.DataFrame
     n_started: int
     n_completed: int
-    excluded: tuple[tuple[str, str], ...]
+    left_out: tuple[LeftOut, ...]
     set_aside: tuple[tuple[str, str], ...]
     mode: Mode
     n_missing: int
+
+    @property
+    def excluded(self) -> tuple[tuple[str, str], ...]:
+        """(participant, every reason for leaving them out)."""
+        people = dict.fromkeys(each.participant for each in self.left_out)
+        return tuple((who, "; ".join(e.reason for e in self.left_out if e.participant == who)) for who in people)
 
     @property
     def n_analysed(self) -> int:
@@ -50,11 +69,14 @@ def draw_sample(ratings: pd.DataFrame, plan: AnalysisPlan, participants: Path | 
     answered = shown.dropna(subset="rating")
     mode = choose_mode(answered, plan)
     started, finished, withdrawn = people(ratings, answered, mode, participants)
-    reasons = dict(rule_breakers(ratings, plan.exclude))
+    left_out = [LeftOut(who, "withdrew", "withdrew") for who in withdrawn]
     if plan.completers_only:
-        reasons |= {who: "did not complete" for who in started if who not in finished}
-    reasons |= dict.fromkeys(withdrawn, "withdrew")
-    kept = answered[~answered["participant"].isin(list(reasons))]
+        missed = (who for who in started if who not in finished and who not in withdrawn)
+        left_out += [LeftOut(who, "completers_only", "did not complete") for who in missed]
+    left_out += rule_breakers(ratings, plan.exclude)
+    order = {str(who): place for place, who in enumerate(natural_order(each.participant for each in left_out))}
+    left_out.sort(key=lambda each: order[each.participant])
+    kept = answered[~answered["participant"].isin(list(order))]
     if kept.empty:
         raise BadInput(
             f"ratings: {len(started)} started, {len(finished)} completed, and nobody is left to analyse; "
@@ -63,12 +85,13 @@ def draw_sample(ratings: pd.DataFrame, plan: AnalysisPlan, participants: Path | 
     return Sample(
         ratings=kept.reset_index(drop=True),
         everything=ratings[ratings["participant"].isin(kept["participant"].unique())],
+        of_everyone=ratings,
         n_started=len(started),
         n_completed=len(finished),
-        excluded=tuple((who, reasons[who]) for who in map(str, natural_order(reasons))),
+        left_out=tuple(left_out),
         set_aside=set_aside,
         mode=mode,
-        n_missing=int(shown.loc[~shown["participant"].isin(list(reasons)), "rating"].isna().sum()),
+        n_missing=int(shown.loc[~shown["participant"].isin(list(order)), "rating"].isna().sum()),
     )
 
 
@@ -120,20 +143,19 @@ def read_participants(path: Path) -> tuple[list[str], set[str] | None, set[str]]
     return list(frame["participant"]), finished, set(frame.loc[text.isin(WITHDRAWN), "participant"]) - finished
 
 
-def rule_breakers(ratings: pd.DataFrame, rules: Exclusions) -> list[tuple[str, str]]:
-    """(participant, reason) for each declared rule that somebody breaks."""
-    found: list[tuple[str, str]] = []
-    by_person = ratings.groupby("participant")
-    if rules.failed_checks is not None and "check_passed" in ratings:
-        failed = ratings["check_passed"].str.lower().isin(["false", "0", "no"]) & is_check(ratings)
-        count = failed.groupby(ratings["participant"]).sum()
-        found += [(str(who), f"failed {n} attention checks") for who, n in count.items() if n >= rules.failed_checks]
-    if rules.median_rt_ms_below is not None and "rt_ms" in ratings:
-        median = by_person["rt_ms"].median()
-        fast = median[median < rules.median_rt_ms_below]
-        found += [(str(who), f"median answer time {ms:.0f} ms") for who, ms in fast.items()]
+def rule_breakers(ratings: pd.DataFrame, rules: Exclusions) -> list[LeftOut]:
+    """Whoever breaks a declared rule, once for each rule."""
+    found: list[LeftOut] = []
+    if rules.failed_checks is not None:
+        failed = failed_checks(ratings)
+        for who, n in failed[failed >= rules.failed_checks].items():
+            found.append(LeftOut(str(who), "failed_checks", f"failed {counted(int(n), 'attention check')}"))
+    if rules.median_rt_ms_below is not None:
+        median = answer_times(answers(ratings), 0.0)["median_rt_ms"]
+        for who, ms in median[median < rules.median_rt_ms_below].items():
+            found.append(LeftOut(str(who), "median_rt_ms_below", f"median answer time {ms:.0f} ms"))
     if rules.same_answer_share is not None:
-        share = by_person["rating"].agg(lambda given: given.value_counts(normalize=True).max())
-        flat = share[share >= rules.same_answer_share]
-        found += [(str(who), f"gave one answer in {part:.0%} of the ratings") for who, part in flat.items()]
+        share = same_answer_share(answers(ratings))
+        for who, part in share[share >= rules.same_answer_share].items():
+            found.append(LeftOut(str(who), "same_answer_share", f"gave one answer in {part:.0%} of the ratings"))
     return found

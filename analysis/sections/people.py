@@ -1,23 +1,87 @@
-"""Who took part, who is analysed, and who was left out by which rule."""
+"""Who took part, who is analysed for which picture, who was left out by which rule, and how carefully they answered."""
 
+import pandas as pd
+
+from analysis.cells import cell_table, in_every_cell, table_of_cells
 from analysis.evidence import Evidence
-from analysis.plan import Exclusions
+from analysis.labels import natural_key
+from analysis.plan import AnalysisPlan
+from analysis.quality import TOO_FAST_MS, quality_table
+from analysis.results import METHODS
+from analysis.sample import Sample
 from analysis.section import Section, rendered
+from analysis.standing_out import summary_of, table_of_those, with_reasons
+from analysis.tables import Table
+from analysis.wording import joined
+
+LEFT_OUT = ("participant", "rule", "reason")
 
 
 def people(evidence: Evidence) -> Section:
-    """Counts, the rules written before the data, and everyone they left out."""
-    body = rendered("people", sample=evidence.sample, plan=evidence.plan, rules=declared_rules(evidence.plan.exclude))
-    return Section("people", "People", body)
+    """Counts, the rules written before the data and whom they left out, counts per cell, answer quality."""
+    sample, plan = evidence.sample, evidence.plan
+    cells = cell_table(sample, evidence.study)
+    bound = plan.exclude.median_rt_ms_below or TOO_FAST_MS
+    quality = with_reasons(quality_table(sample.of_everyone, evidence.study, bound), evidence.study)
+    quality.insert(1, "analysed", quality["participant"].isin(sample.ratings["participant"].unique()))
+    left_out = pd.DataFrame(
+        [(each.participant, each.rule, each.reason) for each in sample.left_out], columns=list(LEFT_OUT)
+    )
+    everywhere = in_every_cell(cells)
+    said = summary_of(quality)
+    body = rendered(
+        "people",
+        sample=sample,
+        method=METHODS[sample.mode],
+        chosen="as declared" if plan.mode != "auto" else why_mode(sample),
+        declared=bool(plan.model_fields_set),
+        rules=table_of_rules(plan, sample),
+        everywhere=everywhere,
+        cells=None if everywhere else table_of_cells(cells),
+        quality=said,
+        odd=table_of_those(quality, bound),
+    )
+    tables = {"cells": cells, "participants": quality, "excluded": left_out}
+    return Section("people", "People", body, tables, summary=(said,), warnings=tuple(look_alikes(evidence.ratings)))
 
 
-def declared_rules(rules: Exclusions) -> list[str]:
-    """The exclusion rules in words."""
-    said = []
+def why_mode(sample: Sample) -> str:
+    """What the design showed."""
+    if sample.mode == "repeated":
+        return "people rated more than one picture on a question"
+    return "nobody rated two pictures on one question"
+
+
+def table_of_rules(plan: AnalysisPlan, sample: Sample) -> Table:
+    """Every rule, whether declared, and how many it left out (a person may break several)."""
+    count = {rule: sum(each.rule == rule for each in sample.left_out) for rule in declared_rules(plan)}
+    rows = tuple((words, str(count[rule])) for rule, words in declared_rules(plan).items())
+    return Table("table-rules", "Rules for leaving participants out", ("Rule", "Left out"), rows)
+
+
+def declared_rules(plan: AnalysisPlan) -> dict[str, str]:
+    """The rules in force, in words."""
+    rules = plan.exclude
+    said = {"withdrew": "withdrew their data"}
+    if plan.completers_only:
+        said["completers_only"] = "did not complete"
     if rules.failed_checks is not None:
-        said.append(f"{rules.failed_checks} or more failed attention checks")
+        said["failed_checks"] = f"{rules.failed_checks} or more failed attention checks"
     if rules.median_rt_ms_below is not None:
-        said.append(f"median answer time below {rules.median_rt_ms_below:g} ms")
+        said["median_rt_ms_below"] = f"median answer time below {rules.median_rt_ms_below:g} ms"
     if rules.same_answer_share is not None:
-        said.append(f"one answer in {rules.same_answer_share:.0%} or more of the ratings")
+        said["same_answer_share"] = f"one answer in {rules.same_answer_share:.0%} or more of the ratings"
+    return said
+
+
+def look_alikes(ratings: pd.DataFrame) -> list[str]:
+    """Labels that differ in case or spaces alone: most often one label written in two ways."""
+    said = []
+    for column in ("participant", "stimulus", "question"):
+        alike: dict[str, list[str]] = {}
+        for label in ratings[column].unique():
+            alike.setdefault("".join(str(label).casefold().split()), []).append(str(label))
+        for labels in (sorted(names, key=natural_key) for names in alike.values() if len(names) > 1):
+            quoted = joined([f'"{label}"' for label in labels])
+            said.append(f"{column.capitalize()}s {quoted} differ in case or spaces alone and count as {len(labels)}.")
     return said
