@@ -9,6 +9,8 @@ from analysis.script import SCRIPT, script_source
 from analysis.section import TEMPLATES, Section
 from analysis.sections.agreement import agreement
 from analysis.sections.equivalence import equivalence
+from analysis.sections.interactions import interactions
+from analysis.sections.models import models
 from analysis.sections.people import people
 from analysis.sections.pictures import pictures
 from analysis.sections.ratings import ratings
@@ -23,6 +25,8 @@ SECTIONS: tuple[Callable[[Evidence], Section | None], ...] = (
     ratings,
     thesis,
     tests,
+    interactions,
+    models,
     equivalence,
     agreement,
 )

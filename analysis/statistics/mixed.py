@@ -38,12 +38,14 @@ class Estimate:
 @dataclass(frozen=True)
 class MixedFit:
     """A fitted model. `tests`: a row per factor and interaction (`term, chi2, df, p`). `variances`: a row per random
-    term and the residual (`term, variance, share`). `cautions`: what was left out of the model, in sentences."""
+    term and the residual (`term, variance, share`). `left_out`: why the model lacks a random term. `at_zero`: terms of
+    variance 0, fitted without."""
 
     tests: pd.DataFrame
     variances: pd.DataFrame
     n: int
-    cautions: tuple[str, ...]
+    left_out: tuple[str, ...]
+    at_zero: tuple[str, ...]
 
 
 @dataclass(frozen=True)
@@ -78,15 +80,14 @@ class MixedModel:
         coding = coding_of(present, self.value, self.factors, self.interactions)
         cells = present[list(self.factors)].drop_duplicates()
         refuse_empty_cells(coding, cells, self.value)
-        random, cautions = self.estimable(present)
+        random, left_out = self.estimable(present)
         columns = coding.terms[-1].columns.stop + 1
         refuse_work(self.title, len(present), columns, random)
         place = present.groupby(list(self.factors), observed=True, sort=False).ngroup().to_numpy()
         fixed = np.column_stack([np.ones(len(cells)), coding.matrix(cells)])[place]
         found = estimate(self.title, present[self.value].to_numpy(float), fixed, random)
-        cautions += [f"{self.title}: the variance of {name}s is 0; fitted without it." for name in found.dropped]
         tests = wald_tests(coding, found.effects[1:], found.covariance[1:, 1:], self.title, None, 0)
-        return MixedFit(tests, variance_table(found, tuple(random)), len(present), tuple(cautions))
+        return MixedFit(tests, variance_table(found, tuple(random)), len(present), tuple(left_out), found.dropped)
 
     @property
     def title(self) -> str:
@@ -95,33 +96,33 @@ class MixedModel:
 
     def estimable(self, present: pd.DataFrame) -> tuple[dict[str, Codes], list[str]]:
         """The random terms that these ratings can tell apart, coded; and why one cannot be."""
-        random, cautions = {}, []
+        random: dict[str, Codes] = {}
+        left_out = []
         if self.participant is not None:
             codes = codes_of(present[self.participant])
             if repeats(codes):
                 random[self.participant] = codes
             else:
-                cautions.append(
-                    f"{self.title}: no {self.participant} gave two ratings, so {self.participant}s have no variance."
-                )
+                left_out.append(f"no {self.participant} gave two ratings, so {self.participant}s have no variance")
         if self.picture is not None:
             codes = codes_of(present[self.picture])
-            cells = present.groupby(list(self.factors), observed=True).ngroups
-            pictures = present.groupby([*self.factors, self.picture], observed=True).ngroups
-            if pictures == cells:
-                cautions.append(
-                    f"{self.title}: every cell is one {self.picture}, so the variance of {self.picture}s cannot be "
-                    "told from the factors' effects; the model has none."
+            if self.one_a_cell(present, self.picture):
+                left_out.append(
+                    f"every cell is one {self.picture}, so the variance of {self.picture}s cannot be told from the "
+                    "factors' effects"
                 )
             elif repeats(codes):
                 random[self.picture] = codes
             else:
-                cautions.append(
-                    f"{self.title}: no {self.picture} has two ratings, so {self.picture}s have no variance."
-                )
+                left_out.append(f"no {self.picture} has two ratings, so {self.picture}s have no variance")
         if not random:
-            raise Undefined(f"{' '.join(cautions)} No random term is left: the analysis of variance is the model")
-        return random, cautions
+            raise Undefined(f"{self.title}: {'; '.join(left_out)}; no random term is left to estimate")
+        return random, left_out
+
+    def one_a_cell(self, present: pd.DataFrame, picture: str) -> bool:
+        """Whether every cell of the factors shows a single picture."""
+        cells = present.groupby(list(self.factors), observed=True)
+        return int(cells[picture].nunique().max()) == 1
 
 
 def codes_of(column: "pd.Series[str]") -> Codes:

@@ -155,8 +155,7 @@ class OrdinalRegression:
         cautions = []
         if 0 < clusters < len(params):
             cautions.append(
-                f"{self.title}: {clusters} {self.cluster}s for {len(params)} parameters; clustered standard errors are "
-                "too small then"
+                f"{clusters} {self.cluster}s for {len(params)} parameters; clustered standard errors are too small then"
             )
         return OrdinalFit(
             tests,
