@@ -9,7 +9,7 @@ from analysis.plan import BEST, AnalysisPlan
 from analysis.results import Analysed
 from analysis.sample import Sample
 from analysis.study import StudyInfo
-from analysis.wording import counted, joined
+from analysis.wording import counted, joined, sentence_case
 
 NOT_LIVE = {
     "simulated": "These answers are simulated: programs gave them, not people.",
@@ -34,11 +34,11 @@ def remarks(
     said += design_remarks(study, sample, ratings)
     said += [sentence for each in found for sentence in each.trouble]
     said += notes
-    said += [sentence for each in found for sentence in row_remarks(each)]
+    said += dict.fromkeys(sentence for each in found for sentence in row_remarks(each))
     if any(BEST in comparison.stimuli for comparison in plan.comparison):
         said.append('The "best" own picture was picked by the same ratings: the choice flatters its mean.')
     tested = [each.p for each in found if each.p is not None]
-    if len(tested) > 1 and min(tested) < plan.alpha:
+    if plan.adjust == "none" and len(tested) > 1 and min(tested) < plan.alpha:
         chance = len(tested) * plan.alpha
         said.append(
             f"{len(tested)} tests at the {plan.alpha:.0%} level: if no picture differed, about {chance:.1f} would be "
@@ -60,14 +60,26 @@ def row_remarks(each: Analysed) -> list[str]:
     if each.anova is None or each.mode != "repeated":
         return []
     said = []
-    if each.n[0] <= len(each.row.levels):
+    if each.row.kind == "interaction" and each.n[0] <= each.anova["df1"] + 1:
+        people = counted(each.n[0], "participant")
+        said.append(f"{each.row.title}: {people} for {each.anova['df1']} contrasts; sphericity cannot be judged.")
+    elif each.row.kind != "interaction" and each.n[0] <= len(each.row.levels):
         people = counted(each.n[0], "participant")
         said.append(f"{each.row.title}: {people} for {len(each.row.levels)} levels; sphericity cannot be judged.")
     who = [name for name in str(each.anova["dropped"]).split("; ") if name]
     if who:
         people = counted(len(who), "participant")
-        said.append(f"{each.row.title}: {people} with a missing cell left out: {joined(who)}.")
+        where = sentence_case(each.row.question) if "effect" in each.anova else each.row.title
+        said.append(f"{where}: {people} with a missing cell left out: {joined(who)}.")
+    said += [f"{each.row.title}: {reason}." for reason in reasons(each)]
     return said
+
+
+def reasons(each: Analysed) -> list[str]:
+    """Why simple effects of an interaction have no value."""
+    return (
+        [] if each.simple is None else [f"{at}: {why}" for at, why in each.simple[["at", "reason"]].to_numpy() if why]
+    )
 
 
 def question_remarks(study: StudyInfo, sample: Sample, ratings: pd.DataFrame) -> list[str]:
@@ -103,6 +115,7 @@ def design_remarks(study: StudyInfo, sample: Sample, ratings: pd.DataFrame) -> l
 
 def agreement_of_tests(found: Sequence[Analysed], alpha: float) -> str:
     """One sentence: do ranks say the same as means?"""
+    found = [each for each in found if each.row.kind != "interaction"]
     both = [each for each in found if each.p is not None and each.rank_p is not None]
     if not both:
         return ""

@@ -5,10 +5,14 @@ from dataclasses import dataclass
 
 import pandas as pd
 
+from analysis.families import NAMES
+from analysis.interaction_sentences import interaction_sentence, meddlers, significant
 from analysis.plan import AnalysisPlan
 from analysis.results import Analysed
 from analysis.study import Question, StudyInfo
 from analysis.wording import apa_df, apa_p, joined, no_zero, sentence_case, signed
+
+ORDER = ("factor", "interaction", "comparison", "all")
 
 
 @dataclass(frozen=True)
@@ -33,13 +37,22 @@ def findings(study: StudyInfo, found: Sequence[Analysed], plan: AnalysisPlan) ->
     result = []
     for question in study.questions:
         mine = [each for each in found if each.row.question == question.name and each.p is not None]
-        matter = [each for each in mine if each.p is not None and each.p < plan.alpha]
-        matter.sort(key=lambda each: (each.row.kind != "factor", -gap(each)))
-        rest = [each for each in mine if each not in matter]
+        matter = [each for each in mine if significant(each, plan)]
+        matter.sort(key=lambda each: (ORDER.index(each.row.kind), -gap(each)))
+        rest = [each for each in mine if not significant(each, plan)]
         if mine:
-            effects = tuple(Effect(effect_sentence(each, question, plan), apa_statistic(each)) for each in matter)
+            effects = tuple(Effect(words(each, mine, question, plan), apa_statistic(each, plan)) for each in matter)
             result.append(Finding(question, effects, nothing_sentence(rest, plan)))
     return result
+
+
+def words(each: Analysed, mine: Sequence[Analysed], question: Question, plan: AnalysisPlan) -> str:
+    """One finding; a main effect that an interaction bends is said to be an average."""
+    if each.row.kind == "interaction":
+        return interaction_sentence(each)
+    said = effect_sentence(each, question, plan)
+    others = meddlers(each, mine, plan)
+    return f"On average over {joined(others)}, {said[:1].lower()}{said[1:]}" if others else said
 
 
 def ordered_means(each: Analysed) -> pd.DataFrame:
@@ -109,43 +122,57 @@ def nothing_sentence(rest: list[Analysed], plan: AnalysisPlan) -> str:
     if not rest:
         return ""
     tables = [each.tukey for each in rest if each.tukey is not None]
+    bent = [each.row.name for each in rest if each.row.kind == "interaction"]
+    plain = [each.row.name for each in rest if each.row.kind != "interaction"]
+    names = [f"effect of {joined(plain)}"] if plain else []
+    names += [f"interaction {joined(bent)}"] if bent else []
+    said = f"No {' and no '.join(names)} was found. That is not evidence of none"
+    if not tables:
+        return f"{said}."
     widest = max(table[["ci_low", "ci_high"]].abs().to_numpy().max() for table in tables)
-    names = joined([each.row.name for each in rest])
-    return (
-        f"No effect of {names} was found. That is not evidence of none: differences of up to {widest:.2f} remain "
-        f"inside the {plan.confidence:.0%} intervals."
-    )
+    return f"{said}: differences of up to {widest:.2f} remain inside the {plan.confidence:.0%} intervals."
 
 
-def apa_statistic(each: Analysed) -> str:
-    """F(1.93, 83.10) = 22.43, p < .001, with the effect size and its interval."""
+def apa_statistic(each: Analysed, plan: AnalysisPlan) -> str:
+    """F(1.93, 83.10) = 22.43, p < .001, with the adjusted p that decides, the effect size and its interval."""
     assert each.anova is not None and each.p is not None
-    shrink = float(each.anova["epsilon_gg"]) if each.mode == "repeated" else 1.0
-    df1, df2 = each.anova["df1"] * shrink, each.anova["df2"] * shrink
+    df1, df2 = each.df
+    decides = each.deciding_p(plan)
+    adjusted = "" if plan.adjust == "none" or decides is None else f", {NAMES[plan.adjust]}-adjusted {apa_p(decides)}"
     symbol = "η²G" if each.mode == "repeated" else "η²"
     _, size, low, high = each.effect
     return (
-        f"F({apa_df(df1)}, {apa_df(df2)}) = {each.anova['F']:.2f}, {apa_p(each.p)}, "
+        f"F({apa_df(df1)}, {apa_df(df2)}) = {each.anova['F']:.2f}, {apa_p(each.p)}{adjusted}, "
         f"{symbol} = {no_zero(size, 3)}, 90% CI [{no_zero(low, 3)}, {no_zero(high, 3)}]"
     )
 
 
 def apa_sentence(each: Analysed, plan: AnalysisPlan) -> str:
     """A sentence to paste into a paper."""
-    assert each.p is not None and each.means is not None
-    kind = "repeated-measures ANOVA" if each.mode == "repeated" else "one-way ANOVA"
-    corrected = " (Greenhouse–Geisser corrected)" if each.mode == "repeated" and len(each.row.levels) > 2 else ""
-    verdict = "a significant effect" if each.p < plan.alpha else "no significant effect"
-    what = each.row.name if each.row.kind == "factor" else "picture"
+    assert each.anova is not None and each.means is not None
+    corrected = " (Greenhouse–Geisser corrected)" if each.mode == "repeated" and each.anova["df1"] > 1 else ""
+    what = {"factor": f"effect of {each.row.name}", "interaction": f"interaction {each.row.name}"}
+    kind = "main " if each.row.kind == "factor" and each.row.crossed is not None and each.mode == "repeated" else ""
+    verdict = "a significant" if significant(each, plan) else "no significant"
     cells = [
         f"{label}: M = {mean:.2f}, SD = {sd:.2f}"
         for label, mean, sd in ordered_means(each)[["label", "mean", "sd"]].itertuples(index=False)
     ]
     where = f" ({each.row.name})" if each.row.kind == "comparison" else ""
     return (
-        f"A {kind}{corrected} with {people(each)} showed {verdict} of {what} on ratings of "
-        f"“{each.row.question}”{where}, {apa_statistic(each)} ({'; '.join(cells)})."
+        f"A {design(each)}{corrected} with {people(each)} showed {verdict} "
+        f"{kind}{what.get(each.row.kind, 'effect of picture')} on ratings of “{each.row.question}”{where}, "
+        f"{apa_statistic(each, plan)} ({'; '.join(cells)})."
     )
+
+
+def design(each: Analysed) -> str:
+    """repeated-measures ANOVA; of a factorial with its levels: 2 × 3 repeated-measures ANOVA."""
+    if each.mode == "independent":
+        return "one-way ANOVA"
+    if each.row.crossed is None:
+        return "repeated-measures ANOVA"
+    return f"{' × '.join(str(len(factor.levels)) for factor in each.row.crossed.factors)} repeated-measures ANOVA"
 
 
 def people(each: Analysed) -> str:

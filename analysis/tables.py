@@ -1,16 +1,17 @@
 """Tables for the page: every cell as it will be read."""
 
 import math
-from collections.abc import Hashable, Iterable, Mapping, Sequence
+from collections.abc import Hashable, Mapping, Sequence
 from dataclasses import dataclass
 
 import pandas as pd
-from statsmodels.stats.multitest import multipletests
 
+from analysis.families import family_words
 from analysis.plan import AnalysisPlan
 from analysis.results import METHODS, Analysed
-from analysis.wording import apa_df, exact_p, no_zero, signed, thesis_hsd, thesis_p, thesis_verdict
+from analysis.wording import apa_df, exact_p, no_zero, thesis_hsd, thesis_p, thesis_verdict
 
+SHORT = {"holm": "Holm", "fdr": "BH"}
 SHOWN_LEVELS = 8  # more samples make more pairs than a page should hold: those stand in tables/tukey.csv
 
 
@@ -93,31 +94,36 @@ def table_4_5(each: Analysed) -> Table:
     )
 
 
-def table_of_tests(found: Sequence[Analysed]) -> Table:
-    """The test that fits the design: corrected for sphericity and for the number of tests, with effect size."""
+def table_of_tests(found: Sequence[Analysed], plan: AnalysisPlan) -> Table:
+    """The test that fits the design: corrected for sphericity, adjusted over the declared family, with effect size."""
     tested = [each for each in found if each.p is not None]
-    holm = multipletests([each.p for each in tested], method="holm")[1] if tested else []
-    rows = [test_cells(each, float(adjusted)) for each, adjusted in zip(tested, holm, strict=True)]
-    note = f"p Holm: adjusted over the {len(tested)} tests of this table."
-    head: tuple[str, ...] = ("Configuration", "F", "df", "p", "p Holm", "η²", "90% CI")
+    note = f"p Holm and p BH (Benjamini–Hochberg): adjusted over {family_words(plan, len(tested))}. {decides(plan)}"
+    head: tuple[str, ...] = ("Configuration", "F", "df", "p", "p Holm", "p BH", "η²", "90% CI")
     caption = "One-way ANOVA of independent samples"
     if found and found[0].mode == "repeated":
-        head = ("Configuration", "F", "df", "ε GG", "ε HF", "p", "p Holm", "η²G", "90% CI")
+        head = ("Configuration", "F", "df", "ε GG", "ε HF", "p", "p Holm", "p BH", "η²G", "90% CI")
         note = f"df and p are Greenhouse–Geisser corrected; ε HF for comparison. η²G: generalized eta squared. {note}"
-        caption = "Repeated-measures ANOVA"
-    return Table("table-tests", f"{caption}, corrected, with effect sizes", head, tuple(rows), note=note)
+        crossed = any(each.row.crossed for each in found)
+        caption = "Factorial repeated-measures ANOVA" if crossed else "Repeated-measures ANOVA"
+    rows = tuple(map(test_cells, tested))
+    return Table("table-tests", f"{caption}, corrected, with effect sizes", head, rows, note=note)
 
 
-def test_cells(each: Analysed, adjusted: float) -> tuple[str, ...]:
+def decides(plan: AnalysisPlan) -> str:
+    """Which of the columns the words of the report follow."""
+    return f"{'p' if plan.adjust == 'none' else f'p {SHORT[plan.adjust]}'} decides (adjust in [analysis])."
+
+
+def test_cells(each: Analysed) -> tuple[str, ...]:
     """One line of `table_of_tests`."""
     assert each.anova is not None and each.p is not None
+    adjusted = ("–" if p is None else thesis_p(p) for p in (each.p_holm, each.p_fdr))
     _, size, low, high = each.effect
+    df1, df2 = map(apa_df, each.df)
     repeated = each.mode == "repeated"
-    shrink = each.anova["epsilon_gg"] if repeated else 1.0
-    df = f"{apa_df(each.anova['df1'] * shrink)}, {apa_df(each.anova['df2'] * shrink)}"
-    epsilons = (f"{shrink:.3f}", f"{each.anova['epsilon_hf']:.3f}") if repeated else ()
-    tail = (thesis_p(each.p), thesis_p(adjusted), no_zero(size, 3), f"[{no_zero(low, 3)}, {no_zero(high, 3)}]")
-    return (each.row.title, f"{each.anova['F']:.2f}", df, *epsilons, *tail)
+    epsilons = tuple(f"{each.anova[name]:.3f}" for name in ("epsilon_gg", "epsilon_hf")) if repeated else ()
+    tail = (thesis_p(each.p), *adjusted, no_zero(size, 3), f"[{no_zero(low, 3)}, {no_zero(high, 3)}]")
+    return (each.row.title, f"{each.anova['F']:.2f}", f"{df1}, {df2}", *epsilons, *tail)
 
 
 def tables_of_ranks(found: Sequence[Analysed]) -> list[Table]:
@@ -167,43 +173,6 @@ def table_of_friedman(found: Sequence[Analysed]) -> Table | None:
     )
     head = ("Configuration", "χ²", "df", "p", "Kendall W")
     return Table("table-ranks", "Friedman's test: ranks instead of means", head, rows) if rows else None
-
-
-def table_of_pairs(found: Iterable[Analysed], confidence: float) -> Table | None:
-    """Every pair of every row: Tukey's simultaneous intervals; paired t tests (Holm) where people are the same."""
-    rows = []
-    for each in found:
-        if each.tukey is None or len(each.row.levels) > SHOWN_LEVELS:
-            continue
-        labels = {level.code: level.label for level in each.row.levels}
-        holm = each.contrasts.to_dict("records") if each.contrasts is not None else [None] * len(each.tukey)
-        for pair, contrast in zip(each.tukey.to_dict("records"), holm, strict=True):
-            paired = ("–", "–") if contrast is None or pd.isna(contrast["p_holm"]) else (
-                thesis_p(contrast["p_holm"]), signed(contrast["d_z"])
-            )  # fmt: skip
-            interval = f"[{signed(pair['ci_low'])}, {signed(pair['ci_high'])}]"
-            cells = (signed(pair["difference"]), interval, thesis_p(pair["p"]), *paired)
-            title = each.row.title if pair["a"] + pair["b"] == "M1M2" else ""
-            rows.append((title, f"{labels[pair['a']]} minus {labels[pair['b']]}", *cells))
-    if not rows:
-        return None
-    return Table(
-        "table-pairs",
-        "All pairs",
-        (
-            "Configuration",
-            "Pair",
-            "Difference",
-            f"{confidence:.0%} CI",
-            "p Tukey",
-            "p Holm",
-            "d_z",
-        ),
-        tuple(rows),
-        text_columns=2,
-        note="Intervals and p Tukey hold together for all pairs of a row. p Holm: paired t tests, adjusted within it. "
-        "d_z: mean difference over the standard deviation of differences.",
-    )
 
 
 def table_of_raters(raters: pd.DataFrame) -> Table | None:

@@ -22,7 +22,8 @@ def thesis(evidence: Evidence) -> Section:
 def thesis_tables(main: Sequence[Analysed], other: Sequence[Analysed], plan: AnalysisPlan) -> list[Table]:
     """Tables 4.4 and 4.5 in the design's mode, then in the other."""
     tables = []
-    for part in (main, other):
+    for found in (main, other):
+        part = [each for each in found if each.row.kind != "interaction"]
         if part:
             tables.append(table_4_4(part, plan))
             tables += [table_4_5(each) for each in part if in_full(each)]

@@ -2,6 +2,7 @@
 
 from collections.abc import Mapping
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 import pandas as pd
@@ -28,7 +29,7 @@ class PlannedContrast:
     value: str
     within: str
     subject: str
-    weights: Mapping[object, float]
+    weights: Mapping[Any, float]
     confidence: float = 0.95
 
     def __call__(self, frame: pd.DataFrame) -> pd.DataFrame:

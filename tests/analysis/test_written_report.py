@@ -46,7 +46,9 @@ def read_page(path: Path) -> Addresses:
 def thesis_report(tmp_path_factory: pytest.TempPathFactory) -> Path:
     """The folder of the thesis-shaped report."""
     folder = tmp_path_factory.mktemp("thesis")
-    manifest = write_manifest(folder / "study", thesis_stimuli(), {"alpha": 0.10, "comparison": [COMPARISON]})
+    manifest = write_manifest(
+        folder / "study", thesis_stimuli(), {"alpha": 0.10, "adjust": "none", "comparison": [COMPARISON]}
+    )
     told: list[tuple[int, int]] = []
     results = write_report(
         REPEATED, folder / "report", manifest=manifest, progress=lambda done, total, what: told.append((done, total))

@@ -1,0 +1,128 @@
+"""Tables of what stands behind an overall test: pairs, declared contrasts, simple effects."""
+
+from collections.abc import Iterable
+
+import pandas as pd
+
+from analysis.plan import AnalysisPlan
+from analysis.results import Analysed
+from analysis.tables import SHOWN_LEVELS, Table
+from analysis.wording import apa_df, no_zero, signed, thesis_p
+
+CHOSEN = {"all": "all pairs", "reference": "each level with the first", "neighbours": "levels that follow each other"}
+
+
+def interval(low: float, high: float) -> str:
+    """[−0.41, 0.32]."""
+    return f"[{signed(low)}, {signed(high)}]"
+
+
+def table_of_pairs(found: Iterable[Analysed], confidence: float) -> Table | None:
+    """Every pair of every row with Tukey's simultaneous intervals; None where no row has few enough samples."""
+    rows = []
+    for each in found:
+        if each.tukey is None or len(each.row.levels) > SHOWN_LEVELS:
+            continue
+        labels = {level.code: level.label for level in each.row.levels}
+        for place, pair in enumerate(each.tukey.to_dict("records")):
+            name = f"{labels[pair['a']]} minus {labels[pair['b']]}"
+            numbers = (signed(pair["difference"]), interval(pair["ci_low"], pair["ci_high"]), f"{pair['q']:.2f}")
+            rows.append(("" if place else each.row.title, name, *numbers, thesis_p(pair["p"])))
+    head = ("Configuration", "Pair", "Difference", f"{confidence:.0%} CI", "q", "p Tukey")
+    note = "Intervals and p hold together for all pairs of a row."
+    return Table("table-pairs", "All pairs, Tukey", head, tuple(rows), text_columns=2, note=note) if rows else None
+
+
+def table_of_contrasts(found: Iterable[Analysed], plan: AnalysisPlan) -> Table | None:
+    """Paired t tests of the declared pairs with Holm's adjustment; None where nobody rated two samples."""
+    rows = []
+    for each in found:
+        if each.contrasts is None or len(each.row.levels) > SHOWN_LEVELS:
+            continue
+        labels = {level.code: level.label for level in each.row.levels}
+        for place, pair in enumerate(each.contrasts.to_dict("records")):
+            name = f"{labels[pair['a']]} minus {labels[pair['b']]}"
+            numbers = (signed(pair["difference"]), interval(pair["ci_low"], pair["ci_high"]))
+            rows.append(("" if place else each.row.title, name, *numbers, *t_test_cells(pair)))
+    head = ("Configuration", "Pair", "Difference", f"{plan.confidence:.0%} CI", "t", "df", "p Holm", "d_z")
+    note = (
+        "p Holm: adjusted within each row. The interval is that of the pair alone. d_z: mean difference over the "
+        "standard deviation of differences. A pair that everyone rates the same distance apart has no t."
+    )
+    caption = f"Paired contrasts, Holm: {CHOSEN[plan.contrasts]}"
+    return Table("table-contrasts", caption, head, tuple(rows), text_columns=2, note=note) if rows else None
+
+
+def t_test_cells(pair: "dict[object, float] | pd.Series[float]") -> tuple[str, ...]:
+    """t, df, p Holm, d_z; dashes where the differences have no spread."""
+    if pd.isna(pair["p_holm"]):
+        return ("–", f"{pair['df']:.0f}", "–", "–")
+    return (signed(pair["t"]), f"{pair['df']:.0f}", thesis_p(pair["p_holm"]), signed(pair["d_z"]))
+
+
+def table_of_simple_effects(found: Iterable[Analysed]) -> Table | None:
+    """What each interaction consists of; None without interactions."""
+    rows = []
+    for each in found:
+        if each.simple is None:
+            continue
+        for place, part in enumerate(each.simple.to_dict("records")):
+            title = "" if place else each.row.title
+            rows.append((title, f"{part['factor']} at {part['at']}", *simple_cells(part)))
+    head = ("Interaction", "Effect of", "F", "df", "p", "p Holm", "η²p", "90% CI")
+    note = (
+        "The effect of one factor with the others held, Greenhouse–Geisser corrected, each with its own error. p Holm: "
+        "adjusted over the effects of an interaction. η²p: partial eta squared. A dash: no spread to test against."
+    )
+    return Table("table-simple", "Simple effects", head, tuple(rows), text_columns=2, note=note) if rows else None
+
+
+def simple_cells(part: "dict[object, float]") -> tuple[str, ...]:
+    """The numbers of one simple effect; dashes where it has none."""
+    if pd.isna(part["F"]):
+        return ("–",) * 6
+    df1, df2 = (apa_df(part[name] * part["epsilon_gg"]) for name in ("df1", "df2"))
+    low, high = no_zero(part["partial_ci_low"], 3), no_zero(part["partial_ci_high"], 3)
+    size = no_zero(part["partial_eta_squared"], 3)
+    return (
+        f"{part['F']:.2f}",
+        f"{df1}, {df2}",
+        thesis_p(part["p_gg"]),
+        thesis_p(part["p_holm"]),
+        size,
+        f"[{low}, {high}]",
+    )
+
+
+def table_of_planned(planned: pd.DataFrame, plan: AnalysisPlan) -> Table | None:
+    """The contrasts that were declared picture by picture; None where there are none."""
+    rows = tuple(
+        (
+            str(row["contrast"]),
+            str(row["question"]),
+            str(row["weights"]),
+            signed(row["estimate"]),
+            interval(row["ci_low"], row["ci_high"]),
+            *t_test_cells(row),
+            "–" if pd.isna(row["d_av"]) else signed(row["d_av"]),
+        )
+        for _, row in planned.iterrows()
+    )
+    head = (
+        "Contrast",
+        "Question",
+        "Weights",
+        "Estimate",
+        f"{plan.confidence:.0%} CI",
+        "t",
+        "df",
+        "p Holm",
+        "d_z",
+        "d_av",
+    )
+    note = (
+        "The weighted sum of each person’s ratings, tested against 0. p Holm: adjusted over the contrasts declared for "
+        "a question. d_z: estimate over the standard deviation of the sums. d_av: the difference of the two sides, "
+        "each a weighted mean, over their average standard deviation."
+    )
+    return Table("table-planned", "Planned contrasts", head, rows, text_columns=3, note=note) if rows else None
