@@ -15,7 +15,8 @@ def natural_key(label: object) -> tuple[tuple[int, float, str], ...]:
 
 def natural_order(labels: Iterable[object]) -> list[object]:
     """The distinct labels in natural order."""
-    return sorted(dict.fromkeys(labels), key=natural_key)
+    distinct = labels.unique() if isinstance(labels, pd.Series) else dict.fromkeys(labels)
+    return sorted(distinct, key=natural_key)
 
 
 def levels_of(column: "pd.Series[str]") -> list[object]:
