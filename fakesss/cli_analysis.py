@@ -1,7 +1,7 @@
 """Commands about ratings: report."""
 
 import shlex
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from pathlib import Path
 from typing import Any
 
@@ -30,8 +30,9 @@ FROM_ELSEWHERE = ("columns", "wide", "factors", "scale", "participants")  # say 
 @click.option("--analysis", "plan", type=PATH, help="TOML file with the table [analysis], instead of STUDY's.")
 @click.option("--participants", type=PATH, help="CSV of everyone who started.")
 @click.option("--database", metavar="URL", help="Where the ratings are (default: STUDY/ratings.sqlite).")
+@click.option("--pdf", is_flag=True, help="Print the page too, report.pdf beside it (needs Chromium or Chrome).")
 @AS_JSON
-def report(study: Path | None, out: Path | None, database: str | None, as_json: bool, **given: Any) -> None:
+def report(study: Path | None, out: Path | None, database: str | None, pdf: bool, as_json: bool, **given: Any) -> None:
     """Analyse the ratings of STUDY: report/index.html, tables, figures, results.json.
 
     Live ratings where there are any, otherwise simulated ones, otherwise a pilot's; the report says which. With
@@ -45,6 +46,7 @@ def report(study: Path | None, out: Path | None, database: str | None, as_json: 
     if study is not None:
         say_changed(study)
     out = out or (study or Path()) / "report"
+    print_pdf = pdf_printer(out) if pdf else None
     options = {"plan": plan_in(given["plan"]), "command": spoken(study, given)}
     if study is not None and given["ratings"] is None:
         from study_server.export import mode_to_analyse
@@ -61,7 +63,16 @@ def report(study: Path | None, out: Path | None, database: str | None, as_json: 
         results = write(given["ratings"], out, study, **reading, **options)
     for warning in results["warnings"]:
         say(warning)
-    done(results, as_json, str(out / "index.html"))
+    pages = [str(out / "index.html"), *([str(print_pdf())] if print_pdf else [])]
+    done(results, as_json, "\n".join(pages))
+
+
+def pdf_printer(out: Path) -> Callable[[], Path]:
+    """What prints the report in `out`; a browser is looked for now, before an analysis that may take long."""
+    from analysis.pdf import find_browser, write_pdf
+
+    find_browser()
+    return lambda: write_pdf(out / "index.html", out / "report.pdf")
 
 
 def refuse_halves(study: Path | None, given: Mapping[str, Any]) -> None:
