@@ -24,7 +24,7 @@ from benchmarks.calibration_experiments import experiments
 
 RESULTS = Path(__file__).parent / "calibration.json"
 SIMULATIONS, SEED, PARTS = 1000, 2011, 20
-HEAD = ("what is claimed", "ratings", "stated", "found", "Monte-Carlo 95%", "verdict")
+HEAD = ("what is claimed", "ratings", "studies", "stated", "found", "Monte-Carlo 95%", "verdict")
 
 
 @dataclass
@@ -78,9 +78,10 @@ def table(tallies: Mapping[str, Tally]) -> list[tuple[str, ...]]:
     for claim, name, tally in found:
         hits, n = tally.hits[claim], tally.done - tally.silent
         low, high = proportion_confint(hits, n, method="wilson")
-        share = f"{hits / n:.1%}" + (f" of {n}" if tally.silent else "")
-        interval = f"{low:.1%} to {high:.1%}"
-        rows.append((claim, name, f"{stated(claim):.0%}", share, interval, verdict(claim, hits, n)))
+        ratings, interval = name.rsplit(": ", 1)[-1], f"{low:.1%} to {high:.1%}"
+        rows.append(
+            (claim, ratings, str(n), f"{stated(claim):.0%}", f"{hits / n:.1%}", interval, verdict(claim, hits, n))
+        )
     return rows
 
 

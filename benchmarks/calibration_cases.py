@@ -18,8 +18,11 @@ from analysis.statistics.agreement import IntraclassCorrelation, KrippendorffAlp
 from analysis.statistics.anova import OneWayAnova, RepeatedMeasuresAnova
 from analysis.statistics.contrasts import PairedContrasts
 from analysis.statistics.equivalence import Equivalence
+from analysis.statistics.factorial import FactorialAnova
 from analysis.statistics.friedman import Friedman
 from analysis.statistics.intervals import MeanIntervals
+from analysis.statistics.mixed import MixedModel
+from analysis.statistics.ordinal import OrdinalRegression
 from analysis.statistics.tukey import TukeyHSD
 from analysis.statistics.undefined import Floats
 from analysis.statistics.wilcoxon import SignedRanks
@@ -130,6 +133,40 @@ def effect_within(frame: pd.DataFrame, crowd: Crowd) -> dict[str, bool]:
         general = squares / (squares + k * PERSON_SD**2 + k * NOISE_SD**2)
         found["90% CI of generalized eta squared"] = covers(anova, general)
     return found
+
+
+def crossed(frame: pd.DataFrame) -> dict[str, bool]:
+    """Six pictures as a 2 x 3 factorial: the interaction."""
+    place = frame["condition"].str[1:].astype(int) - 1
+    table = FactorialAnova("rating", ("a", "b"), "participant")(frame.assign(a=place // 3, b=place % 3))
+    return {"2 x 3 interaction within people, Greenhouse-Geisser": table["p_gg"].iloc[-1] < ALPHA}
+
+
+def models(frame: pd.DataFrame) -> dict[str, bool]:
+    """The Wald tests of the two models; every level is one picture, so the mixed model has people's variance alone."""
+    found = {"mixed model, Wald": MixedModel("rating", ("condition",), "participant", None)(frame)}
+    if frame["rating"].nunique() <= STEPS:
+        claim = "ordinal regression, Wald, clustered by person"
+        found[claim] = OrdinalRegression("rating", ("condition",), "participant")(frame)
+    return {claim: table["p"].iloc[0] < ALPHA for claim, table in found.items()}
+
+
+def random_pictures(random: np.random.Generator, people: int, pictures: int, spread: float) -> pd.DataFrame:
+    """Three levels of equal mean, each shown by `pictures` pictures that differ by `spread` steps for other reasons."""
+    means = 4 + spread * random.standard_normal(3 * pictures)
+    frame = Crowd("", people, tuple(means), steps=True).frame(random)
+    place = frame["condition"].str[1:].astype(int) - 1
+    return frame.rename(columns={"condition": "picture"}).assign(condition=place // pictures)
+
+
+def picture_models(frame: pd.DataFrame) -> dict[str, bool]:
+    """Is a level's effect claimed for pictures at large? The analysis of means knows these pictures only."""
+    cells = frame.groupby(["participant", "condition"], as_index=False)["rating"].mean()
+    mixed = MixedModel("rating", ("condition",), "participant", "picture")(frame)
+    return {
+        "mixed model, Wald": mixed["p"].iloc[0] < ALPHA,
+        "repeated-measures F, Greenhouse-Geisser": RepeatedMeasuresAnova(**WITHIN)(cells)["p_gg"].iloc[0] < ALPHA,
+    }
 
 
 def two_alike(frame: pd.DataFrame) -> dict[str, bool]:

@@ -14,7 +14,8 @@ KINDS = (("normal", MIDDLE, False), ("7 steps", MIDDLE, True), ("7 steps, ceilin
 
 @dataclass(frozen=True)
 class Experiment:
-    """`share` of the simulations asked for: slow ones are run less often, quick ones more."""
+    """`name`: a heading of its own, if any, then ": " and the ratings as the table names them. `share`: of the
+    simulations asked for; slow ones are run less often, quick ones more."""
 
     name: str
     draw: Draw
@@ -24,7 +25,7 @@ class Experiment:
 
 def experiments() -> list[Experiment]:
     """All of them, in the order of the table."""
-    return [*between(), *within(), *pairs(), *intervals(), *raters()]
+    return [*between(), *within(), *models(), *pairs(), *intervals(), *raters()]
 
 
 def between() -> Iterator[Experiment]:
@@ -50,6 +51,26 @@ def within() -> Iterator[Experiment]:
     )
     for crowd in crowds:
         yield Experiment(crowd.name, crowd.frame, cases.no_effect_within)
+
+
+def models() -> Iterator[Experiment]:
+    """The same people: interactions, and regressions instead of analyses of variance."""
+    for name, steps in (("normal", False), ("7 steps", True)):
+        crowd = Crowd(f"crossed: {name}, 20 people x 6", 20, (MIDDLE,) * 6, steps)
+        yield Experiment(crowd.name, crowd.frame, cases.crossed)
+    crowds = (
+        Crowd("models: 7 steps, 44 people x 4", 44, (MIDDLE,) * 4, steps=True),
+        Crowd("models: 7 steps, 20 people x 4", 20, (MIDDLE,) * 4, steps=True),
+        Crowd("models: 7 steps, 8 people x 4", 8, (MIDDLE,) * 4, steps=True),
+        Crowd("models: 7 steps, ceiling, 20 people x 4", 20, (CEILING,) * 4, steps=True),
+        Crowd("models: 7 steps, sphericity broken, 20 people x 4", 20, (MIDDLE,) * 4, steps=True, noises=UNEQUAL),
+    )
+    for crowd in crowds:
+        yield Experiment(crowd.name, crowd.frame, cases.models)
+    for pictures, share in ((3, 1.0), (6, 0.3)):
+        name = f"pictures: 7 steps, 20 people x 3 levels of {pictures} random pictures"
+        draw = partial(cases.random_pictures, people=20, pictures=pictures, spread=0.5)
+        yield Experiment(name, draw, cases.picture_models, share)
 
 
 def pairs() -> Iterator[Experiment]:

@@ -9,7 +9,7 @@ from matplotlib.figure import Figure
 from matplotlib.layout_engine import ConstrainedLayoutEngine
 from matplotlib.offsetbox import AnnotationBbox, OffsetImage
 
-from analysis.figures.style import COLOURS, FAINT, INK, STYLE, THUMBNAIL, Drawing, drawn, thumbnail
+from analysis.figures.style import COLOURS, FAINT, INK, STYLE, THUMBNAIL, Drawing, drawn, folded, thumbnail
 from analysis.margins import Judged
 from analysis.statistics.equivalence import UNTESTED
 from analysis.study import StudyInfo
@@ -25,6 +25,7 @@ MARKS = {
 BAND = "#dcebf7"
 MOST_PAIRS = 36  # lines of one figure: more do not stand on a page
 LINE, HEADING = 0.3, 0.42  # inches
+LETTERS = 34  # of a line of names
 
 
 def equivalence_figures(judged: Sequence[Judged], study: StudyInfo) -> tuple[Drawing, ...]:
@@ -56,7 +57,7 @@ def forest(part: Sequence[Judged], study: StudyInfo, number: int) -> Drawing:
         limit = 1.08 * max(reach(one) for one in part)
         grid[-1].set_xlim(-limit, limit)
         question = study.question(part[0].each.row.question)
-        grid[-1].set_xlabel(f"difference of mean ratings of “{question.name}”, steps of the scale")
+        grid[-1].set_xlabel(f"difference of ratings of “{question.name}” (band: margin of ±{part[0].margin:g} steps)")
         level = 1 - 2 * part[0].alpha
         caption = (
             f"Are they rated alike? {sentence_case(question.name)}: differences with {level:.0%} confidence intervals. "
@@ -93,7 +94,7 @@ def draw_row(axes: Axes, one: Judged, study: StudyInfo) -> None:
         if pictures:
             place_pair(axes, place, [pair["a"], pair["b"]], one, study)
     axes.set_ylim(len(one.pairs) - 0.4, -0.6)
-    axes.set_yticks(range(len(one.pairs)), [one.named(pair) for pair in one.records])
+    axes.set_yticks(range(len(one.pairs)), [folded(one.named(pair), LETTERS) for pair in one.records])
     axes.tick_params(axis="y", length=0, pad=48 if pictures else 4)
     axes.tick_params(axis="x", length=0)
     axes.spines["left"].set_visible(False)

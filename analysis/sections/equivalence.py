@@ -82,10 +82,10 @@ def table_of_equivalence(judged: Sequence[Judged], plan: EquivalencePlan) -> Tab
         for place, pair in enumerate(one.records)
     ]
     interval = f"{1 - 2 * plan.alpha:.0%} CI"
-    head = ("Configuration", "Pair", "Verdict", "Difference", interval, "p TOST", "p TOST, Holm", "p difference")
+    head = ("Configuration", "Pair", "Verdict", "Difference", interval, "p TOST", "Holm", "p diff.")
     note = (
-        "p TOST: the larger of the two one-sided tests; it decides with p difference, the two-sided t test, each at "
-        f"α = {plan.alpha:g}. Holm: adjusted for the number of pairs of the row. One pair chosen after seeing all "
+        "p TOST: the larger of the two one-sided tests; it decides with p diff., the two-sided t test, each at "
+        f"α = {plan.alpha:g}. Holm: p TOST adjusted for the number of pairs of the row. One pair chosen after seeing all "
         "needs the adjusted p; the claim that all pairs of a row are alike does not."
     )
     caption = "Two one-sided tests of every pair"
