@@ -1,6 +1,6 @@
 """The `fakesss` command: composes the four packages. Each command imports what it needs when it runs.
 
-The commands themselves stand in `cli_study`, `cli_analysis`, `cli_picture` and `cli_measure`.
+The commands themselves stand in `cli_study`, `cli_analysis`, `cli_power`, `cli_picture` and `cli_measure`.
 """
 
 import json
@@ -33,6 +33,7 @@ def main() -> None:
     import fakesss.cli_analysis
     import fakesss.cli_measure
     import fakesss.cli_picture
+    import fakesss.cli_power
     import fakesss.cli_study  # noqa: F401  (all add their commands)
 
     try:
