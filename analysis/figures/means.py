@@ -68,7 +68,7 @@ def factor_figure(study: StudyInfo, mine: Sequence[Analysed], confidence: float,
 
 def comparison_figures(study: StudyInfo, found: Sequence[Analysed], confidence: float) -> list[Drawing]:
     """Figure 4.6: the compared pictures side by side; of more than twelve their means in order."""
-    mine = [each for each in found if each.row.kind != "factor" and each.means is not None]
+    mine = [each for each in found if each.row.kind in ("comparison", "all") and each.means is not None]
     few = [each for each in mine if len(each.row.levels) <= SIDE_BY_SIDE]
     many = [each for each in mine if len(each.row.levels) > SIDE_BY_SIDE]
     figures = [comparison_figure(study, few, confidence)] if few else []
