@@ -3,6 +3,7 @@
 from collections.abc import Callable, Sequence
 
 from analysis.evidence import Evidence
+from analysis.families import deciding_words
 from analysis.remarks import not_live
 from analysis.results import METHODS
 from analysis.script import SCRIPT, script_source
@@ -69,6 +70,7 @@ def lead(evidence: Evidence) -> str:
     """Who is analysed, and what it takes to be named below."""
     sample, alpha = evidence.sample, evidence.plan.alpha
     test = "repeated-measures ANOVA, Greenhouse–Geisser corrected" if sample.mode == "repeated" else "one-way ANOVA"
+    test += f", {deciding_words(evidence.plan, sum(each.p is not None for each in evidence.main))}"
     return (
         f"{counted(sample.n_started, 'person').replace('persons', 'people')} started, {sample.n_completed} completed, "
         f"{sample.n_analysed} are analysed. An effect is named where p < {alpha:g} ({test}); the interval of each "
