@@ -64,11 +64,18 @@ class Renderer:
 
         `timed` adds GPU times of each pass; `forced` names effects to simulate although their weight is zero.
         """
-        plan, outcome = self._run(scene, (PICTURE, "mesh"), samples_of(scene), timed, forced)
-        image = np.ascontiguousarray(outcome.values[PICTURE][::-1])
-        passes = [{"name": name, "gpu_ms": outcome.gpu_ms.get(name)} for name in plan.passes]
-        notes = (*outcome.values["mesh"].repairs, *idle_settings(scene, plan))
-        return Rendering(image, passes, notes, dict(outcome.baked), scene.alpha)
+        return rendering(scene, *self._run(scene, (PICTURE, "mesh"), samples_of(scene), timed, forced))
+
+    def render_with(self, scene: Scene, target: str) -> tuple[Rendering, Any]:
+        """The picture of `scene`, its bytes those of `render`, and a resource at the picture's samples, top row first.
+
+        They are drawn together, unless the picture's shading computes the resource in place: then one after the other.
+        """
+        samples = samples_of(scene)
+        plan, outcome = self._run(scene, (PICTURE, "mesh"), samples, beside=target)
+        if target not in outcome.values:
+            return rendering(scene, plan, outcome), self.data(scene, (target,), samples)[target]
+        return rendering(scene, plan, outcome), upright(outcome.values[target])
 
     def data(self, scene: Scene, targets: tuple[str, ...], samples: int = 1) -> dict[str, Any]:
         """Resources by name, top row first: one sample at each pixel's centre, so data is never averaged.
@@ -86,18 +93,22 @@ class Renderer:
         samples: int,
         timed: bool = False,
         forced: frozenset[str] = NONE,
+        beside: str = "",
     ) -> tuple[Plan, Outcome]:
+        """The plan of `targets` and what running it gave; `beside` is made too where that changes nothing of them."""
         self._fit(scene, samples)
         loaded = Run(FrameGraph([mesh_of(scene)]).compile(("mesh",)), self.gpu, self.bakes)()
         mesh = loaded.values["mesh"]
         solid = self.bakes.get(("solid", mesh.sha256), lambda: is_solid(mesh))
-        plan = build(scene, samples, solid, forced).compile(targets)
+        graph = build(scene, samples, solid, forced)
+        plan = graph.compile(targets)
+        everything = plan if not beside or is_merged(plan, beside) else graph.compile((*targets, beside))
         maps = shadow_maps(plan)
         self.gpu.keep_drawn(maps)
         if maps and max(maps.size) > self.largest_texture:
             raise too_large_maps(maps, self.largest_texture)
         with opengl.reporting_memory(*what_takes_most(plan, scene, samples)):
-            outcome = Run(plan, self.gpu, self.bakes, timed)()
+            outcome = Run(everything, self.gpu, self.bakes, timed)()
         return plan, replace(outcome, baked={**outcome.baked, **loaded.baked})
 
     def _fit(self, scene: Scene, samples: int) -> None:
@@ -111,6 +122,19 @@ class Renderer:
             self.gpu.drawn.clear()
             self.gpu.pool.release()
             self.buffer_size = size
+
+
+def rendering(scene: Scene, plan: Plan, outcome: Outcome) -> Rendering:
+    """What a run of `plan` gave, as a picture."""
+    image = np.ascontiguousarray(outcome.values[PICTURE][::-1])
+    passes = [{"name": name, "gpu_ms": outcome.gpu_ms.get(name)} for name in plan.passes]
+    notes = (*outcome.values["mesh"].repairs, *idle_settings(scene, plan))
+    return Rendering(image, passes, notes, dict(outcome.baked), scene.alpha)
+
+
+def is_merged(plan: Plan, resource: str) -> bool:
+    """Whether a pass computes the resource in place for itself."""
+    return any(verdict.merged and resource in verdict.node.writes for verdict in plan.verdicts)
 
 
 def too_large_maps(maps: TextureSpec, largest: int) -> BadInput:

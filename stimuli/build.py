@@ -123,7 +123,10 @@ def verify(folder: Path, *, quiet: bool | None = None) -> list[str]:
         path = manifest_path(folder).parent / entry["file"]
         if not path.is_file() or sha256(path.read_bytes()) != entry["sha256"]:
             problems.append(f"{stimulus.id}: {entry['file']} is not the picture of the manifest; run `fakesss build`")
-        if sha256(draw(stimulus, size=study.scene.size, folder=folder)().png) != entry["sha256"]:
+        again = draw(stimulus, size=study.scene.size, folder=folder)()
+        if sha256(again.png) != entry["sha256"]:
             problems.append(f"{stimulus.id}: drawing it again gives other bytes than the manifest's")
+        elif again.cues.values != entry.get("cues", again.cues.values):
+            problems.append(f"{stimulus.id}: its image cues are not the manifest's; run `fakesss build --force`")
     problems += [f"{identity}: the manifest has it, the design does not; run `fakesss build`" for identity in listed]
     return problems

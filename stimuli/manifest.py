@@ -43,6 +43,8 @@ def stimulus_entry(stimulus: Stimulus, drawn: dict[str, Any]) -> dict[str, Any]:
         "passes": drawn["passes"],
         "gpu_ms": None,
         "warnings": drawn["warnings"],
+        "cues": drawn["cues"],
+        "cues_missing": drawn["cues_missing"],
         "build_key": drawn["build_key"],
     }
 

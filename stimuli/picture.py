@@ -12,6 +12,9 @@ from typing import TYPE_CHECKING, Any
 
 import fakesss
 from fakesss.problem import BadInput
+from fakesss.recent import Recent
+from fakesss.scene import Material, Scene
+from stimuli.cues import Cues, cues_of_picture, cues_of_rendering, mean_thickness
 from stimuli.design import Stimulus
 from stimuli.manifest import sha256
 
@@ -21,23 +24,29 @@ if TYPE_CHECKING:
 # What a picture's bytes come from besides our own source: shapes, repairs, occlusion, drawing, encoding.
 LIBRARIES = ("moderngl", "numpy", "scipy", "trimesh", "embreex", "scikit-image", "fast-simplification", "pillow")
 # Our own source that no stimulus comes from, by stem; everything else makes pictures stale when it changes.
-COMMANDS = ("__main__", "cli", "cli_analysis", "cli_measure", "cli_picture", "cli_study", "doctor")
+COMMANDS = ("__main__", "cli", "cli_analysis", "cli_measure", "cli_picture", "cli_power", "cli_study", "doctor")
 TIMES = ("bench", "bench_bake", "bench_tables", "direct", "direct_light", "savings")
 LOOKS = ("inspect", "views", "contact_sheet", "explanation", "graph_drawing", "graph_layout")
 PLOTS = ("profile_plot", "relief", "lighting_terms")
 CHECKS = ("depth_checks", "hard_edges", "reference")
 NOT_DRAWING = frozenset((*COMMANDS, *TIMES, *LOOKS, *PLOTS, *CHECKS))
+# What thickness does not depend on; a sweep of any of it measures thickness once.
+ELSEWHERE = ("object", "light", "lights", "shadow", "exposure", "background", "alpha", "occlusion", "blur")
+SURFACE = set(Material.model_fields) - {"thickness"}
+NOT_THICKNESS: Any = {**dict.fromkeys(ELSEWHERE, True), "material": SURFACE}  # the object's file counts by its content
+thicknesses: Recent[float | None] = Recent(4096)
 
 
 @dataclass(frozen=True)
 class Drawn:
-    """A picture's PNG bytes and what is to be said of it."""
+    """A picture's PNG bytes, its image cues, and what is to be said of it."""
 
     png: bytes
     width: int
     height: int
     passes: tuple[str, ...]
     warnings: tuple[str, ...]
+    cues: Cues
 
     def facts(self) -> dict[str, Any]:
         """The picture's side of its manifest entry."""
@@ -47,6 +56,7 @@ class Drawn:
             "height": self.height,
             "passes": list(self.passes),
             "warnings": list(self.warnings),
+            **self.cues.facts(),
         }
 
 
@@ -76,13 +86,23 @@ def draw(stimulus: Stimulus, *, size: tuple[int, int], folder: Path) -> Callable
     """Draws the stimulus now, at `size` (width, height); what is returned makes the PNG of it later, on any thread."""
     if stimulus.scene is None:
         return partial(read_made_elsewhere, stimulus, size, folder)
+    return partial(encoded, stimulus.id, *rendered(stimulus.scene.relative_to(folder)))
+
+
+def rendered(scene: Scene) -> tuple["Rendering", Scene, float | None]:
+    """The picture, its scene, and the object's mean thickness in sphere diameters (None: nothing of it is seen)."""
+    from fakesss.passes.mesh import identity
     from fakesss.renderer import shared_renderer
 
-    return partial(encoded, stimulus.id, shared_renderer().render(stimulus.scene.relative_to(folder)))
+    renderer, key = shared_renderer(), (identity(scene.object), scene.model_dump_json(exclude=NOT_THICKNESS))
+    if key in thicknesses:
+        return renderer.render(scene), scene, thicknesses.get(key, lambda: None)
+    rendering, thickness = renderer.render_with(scene, "thickness")
+    return rendering, scene, thicknesses.get(key, lambda: mean_thickness(thickness, rendering.image[..., 3]))
 
 
-def encoded(identity: str, rendering: "Rendering") -> Drawn:
-    """The picture as PNG bytes; `BadInput` if a pixel of it is no picture."""
+def encoded(identity: str, rendering: "Rendering", scene: Scene, thickness: float | None) -> Drawn:
+    """The picture as PNG bytes, and its cues; `BadInput` if a pixel of it is no picture."""
     from fakesss.image_io import encode_png
 
     if rendering.non_finite:
@@ -92,7 +112,8 @@ def encoded(identity: str, rendering: "Rendering") -> Drawn:
         )
     height, width = rendering.image.shape[:2]
     passes = tuple(timing["name"] for timing in rendering.passes)
-    return Drawn(encode_png(rendering.image), width, height, passes, rendering.warnings)
+    cues = cues_of_rendering(rendering.image, scene.background, thickness)
+    return Drawn(encode_png(rendering.image), width, height, passes, rendering.warnings, cues)
 
 
 def read_made_elsewhere(stimulus: Stimulus, size: tuple[int, int], folder: Path) -> Drawn:
@@ -108,7 +129,7 @@ def read_made_elsewhere(stimulus: Stimulus, size: tuple[int, int], folder: Path)
             f"study.toml: compare {stimulus.image!r}: is {width}x{height} but the study's pictures are "
             f"{size[0]}x{size[1]}; resize it or set scene.size"
         )
-    return Drawn(encode_png8(pixels), width, height, (), tuple(warnings))
+    return Drawn(encode_png8(pixels), width, height, (), tuple(warnings), cues_of_picture(pixels))
 
 
 @cache
@@ -121,7 +142,7 @@ def source_sha256() -> str:
 
 
 def drawing_files() -> list[Path]:
-    """The source that pictures come from: modules, shaders and this file."""
+    """The source that pictures and their cues come from: modules, shaders, this file and the cues' own."""
     root = Path(fakesss.__file__).parent
-    ours = sorted([*root.rglob("*.py"), *root.rglob("glsl/*"), Path(__file__)])
+    ours = sorted([*root.rglob("*.py"), *root.rglob("glsl/*"), Path(__file__), Path(__file__).with_name("cues.py")])
     return [path for path in ours if path.is_file() and path.stem not in NOT_DRAWING]

@@ -15,6 +15,7 @@ from stimuli.manifest import manifest_path, read_manifest, sha256
 from stimuli.picture import Drawn
 
 LOCK = "lock"
+FACTS = {"sha256", "width", "height", "passes", "warnings", "cues", "cues_missing", "build_key"}  # of one picture
 UNFINISHED = re.compile(r"\.(img\d+r?\.png|manifest\.json|[0-9a-f]{64}\.(png|json))\.\w{8}")  # see output.replacing
 
 
@@ -73,7 +74,8 @@ class Store:
         """Whether the picture is there and is the one its description tells of."""
         try:
             facts = json.loads((self.waiting / f"{key}.json").read_bytes())
-            return bool(sha256((self.waiting / f"{key}.png").read_bytes()) == facts["sha256"])
+            same = sha256((self.waiting / f"{key}.png").read_bytes()) == facts["sha256"]
+            return bool(same and facts.keys() >= FACTS)
         except (OSError, ValueError, KeyError, TypeError):
             return False
 
@@ -86,9 +88,9 @@ class Store:
     def take_over(self, earlier: Iterable[tuple[str, Path, dict[str, Any]]], wanted: set[str]) -> None:
         """Keep the pictures of an earlier build that this one wants too."""
         for key, path, entry in earlier:
-            if key in wanted and not self.has(key):
+            if key in wanted and entry.keys() >= FACTS and not self.has(key):
                 write_atomically(self.waiting / f"{key}.png", path.read_bytes())
-                facts = {name: entry[name] for name in ("sha256", "width", "height", "passes", "warnings", "build_key")}
+                facts = {name: entry[name] for name in FACTS}
                 write_atomically(self.waiting / f"{key}.json", json.dumps(facts).encode())
 
     def publish(self, key: str, name: str) -> dict[str, Any]:
