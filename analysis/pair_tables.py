@@ -7,7 +7,7 @@ import pandas as pd
 from analysis.plan import AnalysisPlan
 from analysis.results import Analysed
 from analysis.tables import SHOWN_LEVELS, Table
-from analysis.wording import apa_df, no_zero, signed, thesis_p
+from analysis.wording import apa_df, no_zero, sentence_case, signed, thesis_p
 
 CHOSEN = {"all": "all pairs", "reference": "each level with the first", "neighbours": "levels that follow each other"}
 
@@ -98,8 +98,7 @@ def table_of_planned(planned: pd.DataFrame, plan: AnalysisPlan) -> Table | None:
     """The contrasts that were declared picture by picture; None where there are none."""
     rows = tuple(
         (
-            str(row["contrast"]),
-            str(row["question"]),
+            f"{sentence_case(str(row['question']))}: {row['contrast']}",
             str(row["weights"]),
             signed(row["estimate"]),
             interval(row["ci_low"], row["ci_high"]),
@@ -125,4 +124,4 @@ def table_of_planned(planned: pd.DataFrame, plan: AnalysisPlan) -> Table | None:
         "a question. d_z: estimate over the standard deviation of the sums. d_av: the difference of the two sides, "
         "each a weighted mean, over their average standard deviation."
     )
-    return Table("table-planned", "Planned contrasts", head, rows, text_columns=3, note=note) if rows else None
+    return Table("table-planned", "Planned contrasts", head, rows, text_columns=2, note=note) if rows else None

@@ -136,7 +136,10 @@ def analyse(row: Row, sample: Sample, plan: AnalysisPlan, mode: Mode) -> Analyse
         cells
     )
     found["n"] = sizes(cells, anova)
-    found["anova"] = effect if anova is not None and isinstance(effect, dict) else first_row(anova)
+    found["anova"] = first_row(anova)
+    if found["anova"] is not None and isinstance(effect, dict):
+        # the mean square that goes with n means of persons, as the HSD does; the factorial's is that of single pictures
+        found["anova"] = {**effect, "ms_error": found["anova"]["ms_error"]}
     return Analysed(row, mode, answers=cells, trouble=tuple(attempt.trouble), **found)
 
 

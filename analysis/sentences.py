@@ -52,7 +52,7 @@ def words(each: Analysed, mine: Sequence[Analysed], question: Question, plan: An
         return interaction_sentence(each)
     said = effect_sentence(each, question, plan)
     others = meddlers(each, mine, plan)
-    return f"On average over {joined(others)}, {said[:1].lower()}{said[1:]}" if others else said
+    return f"On average over {joined(others)} it {said[:1].lower()}{said[1:]}" if others else said
 
 
 def ordered_means(each: Analysed) -> pd.DataFrame:

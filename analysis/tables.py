@@ -1,10 +1,7 @@
 """Tables for the page: every cell as it will be read."""
 
-import math
-from collections.abc import Hashable, Mapping, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
-
-import pandas as pd
 
 from analysis.families import family_words
 from analysis.plan import AnalysisPlan
@@ -98,11 +95,14 @@ def table_of_tests(found: Sequence[Analysed], plan: AnalysisPlan) -> Table:
     """The test that fits the design: corrected for sphericity, adjusted over the declared family, with effect size."""
     tested = [each for each in found if each.p is not None]
     note = f"p Holm and p BH (Benjamini–Hochberg): adjusted over {family_words(plan, len(tested))}. {decides(plan)}"
-    head: tuple[str, ...] = ("Configuration", "F", "df", "p", "p Holm", "p BH", "η²", "90% CI")
+    head: tuple[str, ...] = ("Configuration", "F", "df", "p", "p Holm", "p BH", "η² [90% CI]")
     caption = "One-way ANOVA of independent samples"
     if found and found[0].mode == "repeated":
-        head = ("Configuration", "F", "df", "ε GG", "ε HF", "p", "p Holm", "p BH", "η²G", "90% CI")
-        note = f"df and p are Greenhouse–Geisser corrected; ε HF for comparison. η²G: generalized eta squared. {note}"
+        head = ("Configuration", "F", "df", "ε GG, HF", "p", "p Holm", "p BH", "η²G [90% CI]")
+        note = (
+            "df and p are Greenhouse–Geisser corrected; the ε of Huynh–Feldt for comparison. η²G: generalized eta "
+            f"squared. {note}"
+        )
         crossed = any(each.row.crossed for each in found)
         caption = "Factorial repeated-measures ANOVA" if crossed else "Repeated-measures ANOVA"
     rows = tuple(map(test_cells, tested))
@@ -121,8 +121,9 @@ def test_cells(each: Analysed) -> tuple[str, ...]:
     _, size, low, high = each.effect
     df1, df2 = map(apa_df, each.df)
     repeated = each.mode == "repeated"
-    epsilons = tuple(f"{each.anova[name]:.3f}" for name in ("epsilon_gg", "epsilon_hf")) if repeated else ()
-    tail = (thesis_p(each.p), *adjusted, no_zero(size, 3), f"[{no_zero(low, 3)}, {no_zero(high, 3)}]")
+    shrink = [no_zero(each.anova[name], 3) for name in ("epsilon_gg", "epsilon_hf")] if repeated else []
+    epsilons = (", ".join(shrink),) if repeated else ()
+    tail = (thesis_p(each.p), *adjusted, f"{no_zero(size, 3)} [{no_zero(low, 3)}, {no_zero(high, 3)}]")
     return (each.row.title, f"{each.anova['F']:.2f}", f"{df1}, {df2}", *epsilons, *tail)
 
 
@@ -173,43 +174,3 @@ def table_of_friedman(found: Sequence[Analysed]) -> Table | None:
     )
     head = ("Configuration", "χ²", "df", "p", "Kendall W")
     return Table("table-ranks", "Friedman's test: ranks instead of means", head, rows) if rows else None
-
-
-def table_of_raters(raters: pd.DataFrame) -> Table | None:
-    """Agreement between people, question by question."""
-    rows = tuple(
-        (entry["question"], *(with_interval(entry, name) for name in ("icc_a1", "icc_ak", "alpha")))
-        for entry in raters.to_dict("records")
-    )
-    head = ("Question", "ICC(A,1), one rater", "ICC(A,k), all raters", "Krippendorff’s α, ordinal")
-    note = "95% intervals in brackets; that of α is a bootstrap over pictures."
-    return Table("table-raters", "Agreement between people", head, rows, note=note) if rows else None
-
-
-def with_interval(entry: Mapping[Hashable, float], name: str) -> str:
-    """.290 [.019, .761]; without the bracket where there is no interval."""
-    if math.isnan(entry[f"{name}_low"]):
-        return f"{no_zero(entry[name], 3)} (no interval)"
-    value, low, high = (no_zero(entry[key], 3) for key in (name, f"{name}_low", f"{name}_high"))
-    return f"{value} [{low}, {high}]"
-
-
-def table_of_retests(retests: pd.DataFrame) -> Table | None:
-    """Self-agreement on pictures shown more than once."""
-    if retests.empty:
-        return None
-    rows = [
-        (
-            entry["question"],
-            entry["showings"],
-            str(entry["n"]),
-            entry["means"],
-            f"{entry['within_sd']:.2f}",
-            f"{entry['mean_abs_difference']:.2f}",
-            f"{entry['share_equal']:.0%}",
-            f"{entry['share_within_1']:.0%}",
-        )
-        for entry in retests.to_dict("records")
-    ]
-    head = ("Question", "Showings", "n", "Means", "Within-person SD", "Mean |difference|", "Same answer", "Within 1")
-    return Table("table-retest", "One picture, shown more than once", head, tuple(rows), text_columns=2)

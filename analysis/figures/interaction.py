@@ -20,6 +20,8 @@ from analysis.study import Factor, StudyInfo
 from analysis.wording import joined, level_text, sentence_case
 
 MARKERS, DASHES = ("o", "s", "^", "D", "v", "P"), ("-", (0, (5, 2)), (0, (1, 1.2)), "-.", (0, (7, 2, 1, 2, 1, 2)), "-")
+APART = tuple(COLOURS[place] for place in (0, 2, 1, 3, 5, 4))
+"""The colours, those that differ most in grey first."""
 SIDE = 22
 """Points: a thumbnail of a cell."""
 PICTURED = (6, 4)
@@ -94,7 +96,7 @@ def draw_lines(axes: Axes, each: Analysed, layout: Layout, values: tuple[Any, ..
     for line, level in enumerate(layout.lines.levels):
         cells = [layout.cell(each, axis=value, lines=level, panels=values) for value in layout.axis.levels]
         own = means.loc[[cell.code for cell in cells]]
-        colour, marker = COLOURS[line % len(COLOURS)], MARKERS[line % len(MARKERS)]
+        colour, marker = APART[line % len(APART)], MARKERS[line % len(MARKERS)]
         axes.errorbar(
             places + 0.1 * (line - (count - 1) / 2), own["mean"], yerr=(own["ci_high"] - own["mean"]).fillna(0.0),
             color=colour, marker=marker, markersize=6, linestyle=DASHES[line % len(DASHES)], linewidth=1.4,
