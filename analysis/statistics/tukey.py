@@ -7,7 +7,7 @@ import pandas as pd
 
 from analysis.statistics.anova import OneWayAnova, RepeatedMeasuresAnova
 from analysis.statistics.studentized_range import studentized_quantile, tail_probabilities
-from analysis.statistics.undefined import complete_table, groups_of
+from analysis.statistics.undefined import complete_table, groups_of, residuals
 
 
 @dataclass(frozen=True)
@@ -61,7 +61,8 @@ class TukeyHSD:
             parts = groups_of(frame, self.value, self.group)
             samples = {level: (float(part.mean()), len(part)) for level, part in parts.items()}
             return samples, float(anova["ms_within"]), int(anova["df2"])
-        anova = RepeatedMeasuresAnova(self.value, self.group, self.subject)(frame).iloc[0]
         wide, _ = complete_table(frame, self.value, self.group, self.subject)
-        samples = {level: (float(wide[level].mean()), len(wide)) for level in wide.columns}
-        return samples, float(anova["ms_error"]), int(anova["df2"])
+        RepeatedMeasuresAnova(self.value, self.group, self.subject).refuse_no_residual(wide)
+        df = (wide.shape[0] - 1) * (wide.shape[1] - 1)
+        mse = float((residuals(wide.to_numpy()) ** 2).sum()) / df
+        return {level: (float(wide[level].mean()), len(wide)) for level in wide.columns}, mse, df
