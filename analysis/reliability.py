@@ -1,62 +1,90 @@
 """How far people agree with each other, and with themselves on pictures shown more than once."""
 
+from collections.abc import Callable
 from itertools import combinations
 
 import numpy as np
 import pandas as pd
 
 from analysis.labels import natural_order
-from analysis.ratings import is_check, is_repeat
 from analysis.sample import Sample
 from analysis.statistics.agreement import IntraclassCorrelation, KrippendorffAlpha
 from analysis.statistics.undefined import Undefined
 from analysis.study import StudyInfo
 
+Entry = dict[str, object]
+
 
 def rater_table(sample: Sample, study: StudyInfo) -> tuple[pd.DataFrame, list[str]]:
-    """A row per question: `icc_a1, icc_a1_low, icc_a1_high` (absolute agreement of one rater), `icc_ak...` (of all),
-    `alpha, alpha_low, alpha_high` (Krippendorff, ordinal), `n_raters, n_targets`; and why a question has none."""
-    entries: list[dict[str, object]] = []
+    """A row per question, and sentences on what has no value.
+
+    Columns: `icc_a1, icc_a1_low, icc_a1_high` (absolute agreement of one rater), `icc_ak...` (of all), `n_raters`,
+    `n_targets`, `icc_dropped` (people left out of the ICC for a missing answer); `alpha, alpha_low, alpha_high`
+    (Krippendorff, ordinal), `alpha_n_raters`; `n_missing` (empty cells of people by pictures).
+    """
+    entries: list[Entry] = []
     notes: list[str] = []
     for question in study.questions if sample.mode == "repeated" else ():
         mine = sample.ratings[sample.ratings["question"] == question.name]
         if mine.empty:  # the remarks say so
             continue
-        try:
-            icc = IntraclassCorrelation("rating", "stimulus", "participant")(mine)
-            alpha = KrippendorffAlpha("rating", "stimulus", "participant")(mine).iloc[0]
-        except Undefined as reason:
-            notes.append(f"Agreement on {question.name}: {reason}")
-            continue
-        by_type = {row["type"]: row for row in icc.to_dict("records")}
-        entry: dict[str, object] = {"question": question.name}
-        for name, short in (("ICC(A,1)", "icc_a1"), ("ICC(A,k)", "icc_ak")):
-            row = by_type[name]
-            entry |= {short: row["icc"], f"{short}_low": row["ci_low"], f"{short}_high": row["ci_high"]}
-        entry |= {"alpha": alpha["alpha"], "alpha_low": alpha["ci_low"], "alpha_high": alpha["ci_high"]}
-        entries.append({**entry, "n_raters": row["n_raters"], "n_targets": row["n_targets"]})
+        icc, said = valued(icc_entry, mine, f"Agreement on {question.name}")
+        alpha, again = valued(alpha_entry, mine, f"Agreement on {question.name}")
+        notes += dict.fromkeys([*said, *again])
+        if icc or alpha:
+            missing = mine["participant"].nunique() * mine["stimulus"].nunique() - len(mine)
+            nothing = dict.fromkeys((*ICC_COLUMNS, *ALPHA_COLUMNS), np.nan) | {"n_raters": 0, "icc_dropped": 0}
+            entries.append({"question": question.name, **nothing, **icc, **alpha, "n_missing": missing})
     return pd.DataFrame(entries), notes
 
 
-def retest_table(everything: pd.DataFrame, study: StudyInfo) -> pd.DataFrame:
-    """A row per picture shown repeatedly and question.
+ICC_COLUMNS = ("icc_a1", "icc_a1_low", "icc_a1_high", "icc_ak", "icc_ak_low", "icc_ak_high")
+ALPHA_COLUMNS = ("alpha", "alpha_low", "alpha_high")
+
+
+def valued(make: Callable[[pd.DataFrame], Entry], frame: pd.DataFrame, what: str) -> tuple[Entry, list[str]]:
+    """The entry of a frame, or the sentence why it has none."""
+    try:
+        return make(frame), []
+    except Undefined as reason:
+        return {}, [f"{what}: {reason}"]
+
+
+def icc_entry(mine: pd.DataFrame) -> Entry:
+    """Both ICCs of one question's ratings."""
+    table = IntraclassCorrelation("rating", "stimulus", "participant")(mine)
+    entry = icc_columns(table, {"ICC(A,1)": "icc_a1", "ICC(A,k)": "icc_ak"})
+    first = table.iloc[0]
+    dropped = len(str(first["dropped"]).split("; ")) if first["dropped"] else 0
+    return {**entry, "n_raters": int(first["n_raters"]), "n_targets": int(first["n_targets"]), "icc_dropped": dropped}
+
+
+def icc_columns(table: pd.DataFrame, names: dict[str, str]) -> Entry:
+    """Value and interval of the types that `names` lists (type -> our name)."""
+    entry: Entry = {}
+    for row in table.to_dict("records"):
+        if short := names.get(row["type"]):
+            entry |= {short: row["icc"], f"{short}_low": row["ci_low"], f"{short}_high": row["ci_high"]}
+    return entry
+
+
+def alpha_entry(mine: pd.DataFrame) -> Entry:
+    """Krippendorff's alpha of one question's ratings."""
+    row = KrippendorffAlpha("rating", "stimulus", "participant")(mine).iloc[0]
+    entry: Entry = {"alpha": row["alpha"], "alpha_low": row["ci_low"], "alpha_high": row["ci_high"]}
+    return {**entry, "alpha_n_raters": int(row["n_raters"])}
+
+
+def retest_table(shown: pd.DataFrame, study: StudyInfo) -> pd.DataFrame:
+    """A row per picture shown repeatedly and question; `shown` as `analysis.quality.showings` returns it.
 
     Columns: `question, showings` (ids), `n` (people with all showings), `means` (one for each showing), `within_sd`
     (root of the mean variance within a person), `mean_abs_difference` and `share_equal`, `share_within_1` over all
     pairs of showings.
     """
-    root = {p.id: p.same_picture_as or p.id for p in study.pictures}
-    frame = everything[~is_check(everything)].dropna(subset="rating")
-    first = frame["stimulus"]
-    if "repeat_of" in frame:
-        first = first.where(~is_repeat(frame), frame["repeat_of"])
-    # another program may show a picture again under its own name
-    again = np.where(is_repeat(frame) & (first == frame["stimulus"]), " again", "")
-    frame = frame.assign(picture=first.map(lambda name: root.get(name, name)), showing=frame["stimulus"] + again)
-    shown = frame.groupby("picture")["showing"].nunique()
-    entries: list[dict[str, object]] = []
-    for picture in natural_order(shown.index[shown > 1]):
-        for question, part in frame[frame["picture"] == picture].groupby("question", sort=False):
+    entries: list[Entry] = []
+    for picture in natural_order(shown["picture"]):
+        for question, part in shown[shown["picture"] == picture].groupby("question", sort=False):
             wide = part.pivot_table(index="participant", columns="showing", values="rating").dropna()
             if len(wide) and wide.shape[1] > 1:
                 entries.append({"question": question, **agreement(wide)})
@@ -65,7 +93,7 @@ def retest_table(everything: pd.DataFrame, study: StudyInfo) -> pd.DataFrame:
     return pd.DataFrame(entries)
 
 
-def agreement(wide: pd.DataFrame) -> dict[str, object]:
+def agreement(wide: pd.DataFrame) -> Entry:
     """Self-agreement in a participants x showings table."""
     names = [str(name) for name in natural_order(wide.columns)]
     gaps = np.concatenate([(wide[a] - wide[b]).abs().to_numpy() for a, b in combinations(names, 2)])
@@ -78,3 +106,43 @@ def agreement(wide: pd.DataFrame) -> dict[str, object]:
         "share_equal": float((gaps == 0).mean()),
         "share_within_1": float((gaps <= 1).mean()),
     }
+
+
+def stability_table(shown: pd.DataFrame, study: StudyInfo) -> tuple[pd.DataFrame, list[str]]:
+    """A row per question: ICC(A,1) of the first showing with the second, over all people and repeated pictures.
+
+    Columns: `question, icc_a1, icc_a1_low, icc_a1_high, n_pairs, n_people, n_pictures`; and sentences on what has no
+    value. `shown` as `analysis.quality.showings` returns it; showings count in natural order of their names.
+    """
+    entries: list[Entry] = []
+    notes: list[str] = []
+    for question in study.questions:
+        pairs = first_two(shown[shown["question"] == question.name])
+        if pairs.empty:
+            continue
+        made, said = valued(stability, pairs, f"Test-retest on {question.name}")
+        entries += [{"question": question.name, **made}] if made else []
+        notes += said
+    return pd.DataFrame(entries), notes
+
+
+def first_two(shown: pd.DataFrame) -> pd.DataFrame:
+    """`participant, picture, place` (0, 1), `rating`: of everyone who answered both of the first two showings."""
+    places = {
+        showing: place
+        for _, part in shown.groupby("picture")
+        for place, showing in enumerate(natural_order(part["showing"]))
+    }
+    frame = shown.assign(place=shown["showing"].map(places))
+    frame = frame[frame["place"] < 2]
+    cells = frame.groupby(["participant", "picture", "place"], as_index=False)["rating"].mean()
+    both = cells.groupby(["participant", "picture"])["place"].transform("size") == 2
+    return cells.loc[both]
+
+
+def stability(pairs: pd.DataFrame) -> Entry:
+    """One question's pairs of answers: each pair is a target, the first and the second showing its raters."""
+    code = pairs.groupby(["participant", "picture"]).ngroup()
+    table = IntraclassCorrelation("rating", "pair", "place")(pairs.assign(pair=code))
+    counts: Entry = {"n_pairs": len(pairs) // 2, "n_people": pairs["participant"].nunique()}
+    return {**icc_columns(table, {"ICC(A,1)": "icc_a1"}), **counts, "n_pictures": pairs["picture"].nunique()}

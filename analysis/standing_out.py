@@ -89,8 +89,8 @@ def table_of_those(table: pd.DataFrame, too_fast_ms: float = TOO_FAST_MS) -> Tab
         rows,
         text_columns=3,
         note=f"Stands out: a failed check; one answer in {SAME_ANSWER:.0%} of the ratings or {RUN} times in a row; "
-        f"{TOO_FAST:.0%} of the answers faster than {too_fast_ms:g} ms; a correlation with the mean of the others below "
-        f"0 (question means taken out); showings of one picture rated more than a third of the scale apart; "
+        f"{TOO_FAST:.0%} of the answers faster than {too_fast_ms:g} ms; a correlation with the mean of the others "
+        f"below 0 (question means taken out); showings of one picture rated more than a third of the scale apart; "
         f"{FOCUS_MS / 1000:g} s away from the page; answers missing. – : the file does not tell. Everyone: "
         "tables/participants.csv.",
     )
