@@ -31,7 +31,7 @@ def family_words(plan: AnalysisPlan, count: int) -> str:
 
 
 def deciding_words(plan: AnalysisPlan, count: int) -> str:
-    """after the p that decides: which adjustment, over which tests."""
+    """Which p decides: how it is adjusted, and over which tests."""
     if plan.adjust == "none":
         return "not adjusted for the number of tests"
-    return f"adjusted over {family_words(plan, count)} ({NAMES[plan.adjust]})"
+    return f"{NAMES[plan.adjust]}-adjusted over {family_words(plan, count)}"

@@ -35,8 +35,8 @@ def interaction_sentence(each: Analysed) -> str:
         return f"How {joined(firsts)} work together depends on {last}: their effects must be read for each combination."
     moved, held = turned(each)
     spread = spreads(each, held)
-    at = joined([f"{value:.2f} at {held} {level}" for level, value in spread.items()])
-    return f"The effect of {moved} depends on {held}: from its lowest mean to its highest are {at}."
+    at = joined([f"{value:.2f} apart at {held} {level}" for level, value in spread.items()])
+    return f"The effect of {moved} depends on {held}: its highest and lowest mean are {at}."
 
 
 def turned(each: Analysed) -> tuple[str, str]:

@@ -67,9 +67,9 @@ def table_of_simple_effects(found: Iterable[Analysed]) -> Table | None:
         if each.simple is None:
             continue
         for place, part in enumerate(each.simple.to_dict("records")):
-            title = "" if place else each.row.title
+            title = "" if place else sentence_case(each.row.question)
             rows.append((title, f"{part['factor']} at {part['at']}", *simple_cells(part)))
-    head = ("Interaction", "Effect of", "F", "df", "p", "p Holm", "η²p", "90% CI")
+    head = ("Question", "Effect of", "F", "df", "p", "p Holm", "η²p", "90% CI")
     note = (
         "The effect of one factor with the others held, Greenhouse–Geisser corrected, each with its own error. p Holm: "
         "adjusted over the effects of an interaction. η²p: partial eta squared. A dash: no spread to test against."
@@ -109,7 +109,6 @@ def table_of_planned(planned: pd.DataFrame, plan: AnalysisPlan) -> Table | None:
     )
     head = (
         "Contrast",
-        "Question",
         "Weights",
         "Estimate",
         f"{plan.confidence:.0%} CI",

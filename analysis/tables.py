@@ -98,7 +98,7 @@ def table_of_tests(found: Sequence[Analysed], plan: AnalysisPlan) -> Table:
     head: tuple[str, ...] = ("Configuration", "F", "df", "p", "p Holm", "p BH", "η² [90% CI]")
     caption = "One-way ANOVA of independent samples"
     if found and found[0].mode == "repeated":
-        head = ("Configuration", "F", "df", "ε GG, HF", "p", "p Holm", "p BH", "η²G [90% CI]")
+        head = ("Configuration", "F", "df", "p", "p Holm", "p BH", "η²G [90% CI]", "ε GG, HF")
         note = (
             "df and p are Greenhouse–Geisser corrected; the ε of Huynh–Feldt for comparison. η²G: generalized eta "
             f"squared. {note}"
@@ -124,7 +124,7 @@ def test_cells(each: Analysed) -> tuple[str, ...]:
     shrink = [no_zero(each.anova[name], 3) for name in ("epsilon_gg", "epsilon_hf")] if repeated else []
     epsilons = (", ".join(shrink),) if repeated else ()
     tail = (thesis_p(each.p), *adjusted, f"{no_zero(size, 3)} [{no_zero(low, 3)}, {no_zero(high, 3)}]")
-    return (each.row.title, f"{each.anova['F']:.2f}", f"{df1}, {df2}", *epsilons, *tail)
+    return (each.row.title, f"{each.anova['F']:.2f}", f"{df1}, {df2}", *tail, *epsilons)
 
 
 def tables_of_ranks(found: Sequence[Analysed]) -> list[Table]:
