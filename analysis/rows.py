@@ -125,14 +125,15 @@ def in_row(picture: Picture, factor: Factor, value: Any) -> bool:
 
 
 def declared(study: StudyInfo, plan: AnalysisPlan, questions: list[str], rated: set[str]) -> Iterator[Comparison]:
-    """The plan's comparisons; without any, our best picture beside all pictures of other origin, on each question."""
+    """The plan's comparisons; without any, our best picture beside all of other origin, and beside all controls."""
     yield from plan.comparison
-    others = tuple(p.id for p in study.pictures if p.role == "compare" and p.id in rated)
-    if not plan.comparison and others:
-        yield from (
-            Comparison(name=f"{question}: others vs ours", question=question, stimuli=(BEST, *others))
-            for question in questions
-        )
+    for role, named in (("compare", "others"), ("control", "controls")):
+        beside = tuple(p.id for p in study.pictures if p.role == role and p.id in rated)
+        if not plan.comparison and beside:
+            yield from (
+                Comparison(name=f"{question}: {named} vs ours", question=question, stimuli=(BEST, *beside))
+                for question in questions
+            )
 
 
 def comparison_row(study: StudyInfo, comparison: Comparison, ratings: pd.DataFrame) -> Row | str:

@@ -28,7 +28,7 @@ class Stimulus:
 
 
 def stimuli_of(study: Study) -> list[Stimulus]:
-    """Every stimulus of the study in presentation-neutral order: factor rows, comparison pictures, repeats.
+    """Every stimulus of the study in presentation-neutral order: factor rows, comparison pictures, controls, repeats.
 
     Identities follow the published numbering (`img01` is the thesis's image 1). With `identical = "show-once"` a
     picture that several rows share is listed once and belongs to all of them.
@@ -37,7 +37,9 @@ def stimuli_of(study: Study) -> list[Stimulus]:
     if study.design.identical == "show-once":
         drawn = share_identical(drawn)
     made_elsewhere = [Stimulus("", entry.label or entry.image, "compare", image=entry.image) for entry in study.compare]
-    numbered = number([*drawn, *made_elsewhere], width=max(2, len(str(len(drawn) + len(made_elsewhere)))))
+    controls = [Stimulus("", entry.label, "control", entry.scene(study.scene)) for entry in study.control]
+    entries = [*drawn, *made_elsewhere, *controls]
+    numbered = number(entries, width=max(2, len(str(len(entries)))))
     return [*numbered, *repeats(numbered, study)]
 
 

@@ -21,7 +21,7 @@ def manifest_path(folder: Path) -> Path:
 
 def study_entry(study: Study, folder: Path) -> dict[str, Any]:
     """The manifest's `study` table: the study file as read, without the base scene, and its hash."""
-    table = study.model_dump(mode="json", exclude={"scene", "factor", "compare"})
+    table = study.model_dump(mode="json", exclude={"scene", "factor", "compare", "control"})
     table["factors"] = [factor.model_dump(mode="json") for factor in study.factor]
     return {**table, "sha256": study_sha256(folder)}
 

@@ -26,10 +26,13 @@ def check_sources(study: Study, stimuli: Iterable[Stimulus], folder: Path) -> No
 
 
 def object_place(study: Study, name: str) -> str:
-    """Where the study names the object: a factor's level, or the base scene."""
+    """Where the study names the object: a factor's level, a control, or the base scene."""
     for factor in study.factor:
         if factor.path == "object" and name in factor.levels:
             return f'factor "{factor.name}": level {written(name)}'
+    if name != study.scene.object:  # a control's, then: nothing else sets it
+        label = next(control.label for control in study.control if control.set.get("object") == name)
+        return f"control {written(label)}: object {written(name)}"
     return f"scene.object {written(name)}"
 
 

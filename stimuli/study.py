@@ -7,7 +7,7 @@ import hashlib
 import json
 import math
 import re
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from pathlib import Path
 from typing import Annotated, Any, Literal, Self
 
@@ -17,6 +17,7 @@ from fakesss.problem import BadInput, Strict, validated
 from fakesss.scene import Scene, check_path, read_toml
 
 Level = str | bool | int | float | tuple[float | int, ...]
+MUST_BE = "must be a finite number, true or false, a word, or a list of numbers"
 
 
 def is_number(value: Any) -> bool:
@@ -27,6 +28,20 @@ def is_number(value: Any) -> bool:
 def is_list_of_numbers(value: Any) -> bool:
     """Whether `value` is a list of at least one finite number."""
     return isinstance(value, list) and len(value) > 0 and all(map(is_number, value))
+
+
+def is_level(value: Any) -> bool:
+    """Whether a scene's field could have that value: a finite number, true, false, a word, a list of numbers."""
+    return is_number(value) or isinstance(value, str | bool) or is_list_of_numbers(value)
+
+
+def leaves(table: Mapping[str, Any], prefix: str = "") -> Iterator[tuple[str, Any]]:
+    """(dotted path, value) of everything in a table and the tables within."""
+    for name, value in table.items():
+        if isinstance(value, Mapping):
+            yield from leaves(value, f"{prefix}{name}.")
+        else:
+            yield f"{prefix}{name}", value
 
 
 def written(level: Any) -> str:
@@ -63,6 +78,29 @@ class Compare(Strict):
     label: str = Field("", description="name in tables; empty: the file's name")
 
 
+class Control(Strict):
+    """A picture of the renderer that belongs to no factor: the base scene with some fields set otherwise."""
+
+    label: Annotated[str, Field(min_length=1, description="name in tables")]
+    set: Annotated[dict[str, Any], Field(description="scene field = value, as { material.backlight = 0 }")]
+
+    @property
+    def changes(self) -> dict[str, Any]:
+        """Path -> value: TOML takes material.backlight = 0 for a table in a table, "material.backlight" = 0 not."""
+        return dict(leaves(self.set))
+
+    def scene(self, base: Scene) -> Scene:
+        """`base` with the fields set, or `BadInput` naming control, field and mend."""
+        where = f"study.toml: control {written(self.label)}"
+        if not self.changes:
+            raise BadInput(f"{where}: sets nothing; name a field, for example set = {{ material.backlight = 0 }}")
+        for path, value in self.changes.items():
+            check_path(path, where, len(base.lights))
+            if not is_level(value):
+                raise BadInput(f"{where}: {path} = {written(value)}: {MUST_BE}")
+        return base.replace(self.changes, where)
+
+
 class Study(Strict):
     """`study.toml`, checked. `Study.load` is the way in; `sha256` is of the file's bytes."""
 
@@ -72,6 +110,7 @@ class Study(Strict):
     factor: tuple[Factor, ...] = ()
     design: Design = Design()
     compare: tuple[Compare, ...] = ()
+    control: tuple[Control, ...] = ()
     question: tuple[dict[str, Any], ...] = ()
     survey: dict[str, Any] = Field(default_factory=dict)
     analysis: dict[str, Any] = Field(default_factory=dict)
@@ -86,6 +125,8 @@ class Study(Strict):
         check_opaque(study.scene, f"{path.name}: scene.alpha")
         for factor in study.factor:
             check_factor(factor, study.scene, path.name)
+        for control in study.control:
+            check_opaque(control.scene(study.scene), f"{path.name}: control {written(control.label)}")
         return study
 
     @model_validator(mode="after")
@@ -93,14 +134,15 @@ class Study(Strict):
         for what, names in (
             ("factor name", [factor.name for factor in self.factor]),
             ("factor path", [factor.path for factor in self.factor]),
+            ("control label", [control.label for control in self.control]),
         ):
             twice = {name for name in names if names.count(name) > 1}
             if twice:
-                raise ValueError(f'{what} "{sorted(twice)[0]}" is used twice; give each factor its own')
+                raise ValueError(f'{what} "{sorted(twice)[0]}" is used twice; give each its own')
         spreadsheet = next((f.name for f in self.factor if f.name[0] in "=+-@\t\r"), None)
         if spreadsheet is not None:
             raise ValueError(f'factor name "{spreadsheet}" would be a formula in a spreadsheet; begin it with a letter')
-        if not self.factor and not self.compare:
+        if not (self.factor or self.compare or self.control):
             raise ValueError("nothing to show: add a [[factor]] or a [[compare]] picture")
         return self
 
@@ -135,9 +177,8 @@ def check_levels_are_values(tables: Mapping[str, Any], source: str) -> None:
         if not isinstance(levels, list) or not levels:
             raise BadInput(f"{where}: levels {written(levels)}: must be a list of at least one, for example [0.8, 1.2]")
         for level in levels:
-            if not (is_number(level) or isinstance(level, str | bool) or is_list_of_numbers(level)):
-                must = "must be a finite number, true or false, a word, or a list of numbers"
-                raise BadInput(f"{where}: level {written(level)}: {must}")
+            if not is_level(level):
+                raise BadInput(f"{where}: level {written(level)}: {MUST_BE}")
 
 
 def check_factor(factor: Factor, base: Scene, source: str) -> None:

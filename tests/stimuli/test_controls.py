@@ -1,0 +1,99 @@
+"""Control pictures: the renderer's, rated beside the others, in no factor's row."""
+
+from pathlib import Path
+
+import pytest
+from test_build import STUDY
+from test_study import FACTOR, load
+
+from fakesss.problem import BadInput
+from stimuli.build import build, verify
+from stimuli.design import stimuli_of
+from stimuli.sources import check_sources
+
+OPAQUE = '[[control]]\nlabel = "opaque"\nset = { material.backlight = 0, material.diffuse_contribution = 1.0 }\n'
+
+
+def test_a_control_is_the_base_scene_with_fields_set_and_in_no_row(tmp_path: Path) -> None:
+    study = load(tmp_path, f'title = "x"\n{FACTOR}{OPAQUE}[[compare]]\nimage = "a.png"\n')
+    stimuli = stimuli_of(study)
+    assert [(s.id, s.role) for s in stimuli] == [
+        ("img01", "factor"), ("img02", "factor"), ("img03", "compare"), ("img04", "control"),
+    ]  # fmt: skip
+    control = stimuli[3]
+    assert control.scene == study.scene.replace({"material.backlight": 0, "material.diffuse_contribution": 1.0})
+    assert (control.label, control.rows, control.factors, control.same_picture_as) == ("opaque", (), (), None)
+
+
+@pytest.mark.parametrize(
+    "table",
+    ['set = { "material.backlight" = 0.5 }', "set.material.backlight = 0.5", "[control.set.material]\nbacklight = 0.5"],
+)
+def test_a_field_may_be_written_as_a_path_or_as_tables(tmp_path: Path, table: str) -> None:
+    (only,) = stimuli_of(load(tmp_path, f'title = "x"\n[[control]]\nlabel = "dim"\n{table}\n'))
+    assert only.scene is not None and only.scene.material.backlight == 0.5
+
+
+def test_a_control_that_changes_nothing_names_the_picture_it_is(tmp_path: Path) -> None:
+    study = load(tmp_path, f'title = "x"\n{FACTOR}[[control]]\nlabel = "base"\nset.exposure = 0.9\n')
+    assert [s.same_picture_as for s in stimuli_of(study)] == [None, None, "img01"]
+
+
+def test_controls_are_drawn_by_lot_for_repeats_like_others(tmp_path: Path) -> None:
+    study = load(tmp_path, f'title = "x"\n[design]\nrepeats = 3\n{FACTOR}{OPAQUE}')
+    assert [s.id for s in stimuli_of(study)][3:] == ["img01r", "img02r", "img03r"]
+
+
+@pytest.mark.parametrize(
+    ("text", "sentence"),
+    [
+        (
+            'label = "a"\nset = { material.baklight = 0 }',
+            'study.toml: control "a": path "material.baklight" is no scene field; did you mean "material.backlight"?',
+        ),
+        (
+            'label = "a"\nset = { material.specular = -1 }',
+            'study.toml: control "a": material.specular: -1: must be >= 0',
+        ),
+        (
+            'label = "a"\nset = { exposure = inf }',
+            'control "a": exposure = inf: must be a finite number, true or false',
+        ),
+        ('label = "a"\nset = { lights.0.azimuth = 1 }', 'control "a": path "lights.0.azimuth": counts from lights.0'),
+        ('label = "a"\nset = { alpha = true }', 'control "a": a browser would show its page through the picture'),
+        ('label = "a"\nset = {}', 'study.toml: control "a": sets nothing; name a field, for example set = {'),
+        ('label = "a"\nset.material = {}', 'study.toml: control "a": sets nothing'),
+        ('label = "a"\nset = 1', "study.toml: control[1].set: 1: must be"),
+        ("set.exposure = 1", "study.toml: control[1].label: is missing; add it"),
+        ('label = ""\nset.exposure = 1', "study.toml: control[1].label: '': "),
+        ('label = "a"\nlevels = [1]\nset.exposure = 1', "study.toml: control[1].levels: unknown key"),
+        (
+            'label = "a"\nset.exposure = 1\n[[control]]\nlabel = "a"\nset.exposure = 2',
+            'control label "a" is used twice; give each its own',
+        ),
+    ],
+)
+def test_bad_controls_get_one_sentence(tmp_path: Path, text: str, sentence: str) -> None:
+    with pytest.raises(BadInput) as caught:
+        load(tmp_path, f'title = "x"\n{FACTOR}[[control]]\n{text}\n')
+    assert sentence in str(caught.value)
+    assert "\n" not in str(caught.value)
+
+
+def test_an_object_that_is_not_there_is_looked_for_in_the_control(tmp_path: Path) -> None:
+    study = load(tmp_path, f'title = "x"\n{FACTOR}[[control]]\nlabel = "mine"\nset.object = "mine.ply"\n')
+    with pytest.raises(BadInput, match=r'study\.toml: control "mine": object "mine\.ply": cannot be read'):
+        check_sources(study, stimuli_of(study), tmp_path)
+
+
+@pytest.mark.gl
+def test_a_control_is_built_like_any_picture(tmp_path: Path) -> None:
+    (tmp_path / "study.toml").write_text(STUDY + OPAQUE, encoding="utf-8")
+    manifest = build(tmp_path, quiet=True)
+    control = manifest["stimuli"][-1]
+    assert (control["id"], control["role"], control["label"]) == ("img05", "control", "opaque")
+    assert control["scene"]["material"]["backlight"] == 0 and "blur" not in control["passes"]
+    # the object is the same, though nothing of this picture needs to know how thick it is
+    assert control["cues"]["mean_thickness"] == manifest["stimuli"][0]["cues"]["mean_thickness"]
+    assert "control" not in manifest["study"]
+    assert verify(tmp_path, quiet=True) == []
