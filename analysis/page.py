@@ -24,14 +24,14 @@ SECTIONS: tuple[Callable[[Evidence], Section | None], ...] = (
     people,
     pictures,
     ratings,
-    thesis,
     tests,
     interactions,
     models,
     equivalence,
+    thesis,
     agreement,
 )
-"""In the order of the page."""
+"""In the order of the page: who and what, what was found, what else it allows to say, how far to trust it."""
 
 
 def sections_of(evidence: Evidence) -> list[Section]:
@@ -54,7 +54,7 @@ def render_page(evidence: Evidence, sections: Sequence[Section], said: Sequence[
         findings=findings(study, evidence.main, plan),
         summary=[sentence for section in sections for sentence in section.summary],
         sections=sections,
-        apa=[*sentences, *(sentence for section in sections for sentence in section.sentences)],
+        apa=[("", sentences), *((section.title, section.sentences) for section in sections)],
         remarks=said,
         tables=[name for section in sections for name in section.tables],
         origin=origin,
