@@ -31,7 +31,7 @@ class Question:
 
 @dataclass(frozen=True)
 class Picture:
-    """A stimulus: its levels, the rows it is compared in, and the file to show beside numbers."""
+    """A stimulus: its levels, the rows it is compared in, its image cues, and the file to show beside numbers."""
 
     id: str
     label: str
@@ -40,6 +40,7 @@ class Picture:
     rows: tuple[str, ...] = ()
     same_picture_as: str | None = None
     file: Path | None = None
+    cues: tuple[tuple[str, float | None], ...] = ()  # of a manifest that has them
 
 
 @dataclass(frozen=True)
@@ -113,4 +114,5 @@ def read_picture(entry: dict[str, Any], folder: Path) -> Picture:
         rows=tuple(entry.get("rows") or ()),
         same_picture_as=entry.get("same_picture_as"),
         file=folder / entry["file"],
+        cues=tuple((entry.get("cues") or {}).items()),
     )
