@@ -90,7 +90,7 @@ def question_remarks(study: StudyInfo, sample: Sample, ratings: pd.DataFrame) ->
         meant = get_close_matches(name, asked, n=1, cutoff=0.5)
         hint = f' (did you mean "{meant[0]}"?)' if meant else ""
         said.append(f'Rated but not a question of the study: "{name}"{hint}; not analysed.')
-    answered, used = (set(frame["question"]) for frame in (ratings.dropna(subset="rating"), sample.ratings))
+    answered, used = (set(frame["question"].unique()) for frame in (ratings.dropna(subset="rating"), sample.ratings))
     if never := [name for name in asked if name not in answered]:
         said.append(f"Never answered: {joined(never)}.")
     if left_out := [name for name in asked if name in answered - used]:
@@ -101,7 +101,7 @@ def question_remarks(study: StudyInfo, sample: Sample, ratings: pd.DataFrame) ->
 def design_remarks(study: StudyInfo, sample: Sample, ratings: pd.DataFrame) -> list[str]:
     """Pictures that were never rated or are not listed, and answers that are missing."""
     said = []
-    rated = set(ratings["stimulus"])
+    rated = set(ratings["stimulus"].unique())
     unseen = [p.id for p in study.pictures if p.id not in rated]
     unlisted = sorted(rated - {p.id for p in study.pictures})
     if unseen:

@@ -57,8 +57,8 @@ class Row:
 def rows_of(study: StudyInfo, plan: AnalysisPlan, ratings: pd.DataFrame) -> tuple[list[Row], list[str]]:
     """Every row by factor and question (as figure 4.5), interactions, then comparisons; and sentences on what had to be
     left out."""
-    rated = set(ratings["stimulus"])
-    questions = [q.name for q in study.questions if q.name in set(ratings["question"])]
+    rated, asked = (set(ratings[column].unique()) for column in ("stimulus", "question"))
+    questions = [q.name for q in study.questions if q.name in asked]
     found = {question: crossed_of(study, question, ratings) for question in questions}
     crossed = {question: made for question, made in found.items() if isinstance(made, Crossed)}
     notes = lacking({question: made for question, made in found.items() if isinstance(made, str)})

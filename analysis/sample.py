@@ -114,7 +114,7 @@ def people(
         if finished is not None:
             return started, finished, withdrawn
     if mode == "independent" and not (answered.groupby("participant")["stimulus"].nunique() > 1).any():
-        return started, set(answered["participant"]), set()
+        return started, set(answered["participant"].unique()), set()
     cells = answered.groupby(["stimulus", "question"]).ngroups
     count = answered.groupby("participant").size()
     return started, {str(who) for who in count.index[count == cells]}, set()

@@ -55,7 +55,8 @@ def stacked_figures(study: StudyInfo, shares: pd.DataFrame) -> list[Drawing]:
 
     `shares`: `question, stimulus, answer, n, share` (statistics.shares).
     """
-    shown = [p for p in study.pictures if p.id in set(shares["stimulus"])]
+    rated = set(shares["stimulus"])
+    shown = [p for p in study.pictures if p.id in rated]
     asked = [q for q in study.questions if q.scale is not None and q.name in set(shares["question"])]
     alike: dict[tuple[int | None, str, str], list[Question]] = {}
     for question in asked:
