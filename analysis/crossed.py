@@ -77,7 +77,7 @@ def crossed_of(study: StudyInfo, question: str, ratings: pd.DataFrame) -> Crosse
     Pictures compared, repeats and controls are no part of it.
     """
     factors = crossed_factors(study)
-    rated = set(ratings.loc[ratings["question"] == question, "stimulus"])
+    rated = set(ratings.loc[ratings["question"] == question, "stimulus"].unique())
     own = [picture for picture in study.pictures if picture.role == "factor" and picture.id in rated]
     cells = tuple((picture.id, cell_of(picture, factors)) for picture in own)
     every = list(product(*(map(level_text, factor.levels) for factor in factors)))

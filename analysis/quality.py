@@ -114,7 +114,7 @@ def showings(everything: pd.DataFrame, study: StudyInfo) -> pd.DataFrame:
         first = first.where(~is_repeat(frame), frame["repeat_of"])
     # another program may show a picture again under its own name
     again = np.where(is_repeat(frame) & (first == frame["stimulus"]), " again", "")
-    frame = frame.assign(picture=first.map(lambda name: root.get(name, name)), showing=frame["stimulus"] + again)
+    frame = frame.assign(picture=first.map(root).fillna(first), showing=frame["stimulus"] + again)
     several = frame.groupby("picture")["showing"].nunique()
     return frame[frame["picture"].isin(several.index[several > 1])]
 
