@@ -89,6 +89,6 @@ def table_of_stability(stability: pd.DataFrame) -> Table | None:
         "Test-retest: first against second showing",
         head,
         rows,
-        note="How far a person's two answers to one picture agree: 1 is the same answer every time. Pairs of one person "
-        "or one picture are not independent, so the 95% interval is too narrow.",
+        note="How far a person's two answers to one picture agree: 1 is the same answer every time. Pairs of one "
+        "person or one picture are not independent, so the 95% interval is too narrow.",
     )

@@ -9,6 +9,7 @@ from analysis.results import METHODS
 from analysis.script import SCRIPT, script_source
 from analysis.section import TEMPLATES, Section
 from analysis.sections.agreement import agreement
+from analysis.sections.assumptions import assumptions
 from analysis.sections.equivalence import equivalence
 from analysis.sections.interactions import interactions
 from analysis.sections.models import models
@@ -30,6 +31,7 @@ SECTIONS: tuple[Callable[[Evidence], Section | None], ...] = (
     equivalence,
     thesis,
     agreement,
+    assumptions,
 )
 """In the order of the page: who and what, what was found, what else it allows to say, how far to trust it."""
 

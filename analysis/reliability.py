@@ -137,7 +137,7 @@ def first_two(shown: pd.DataFrame) -> pd.DataFrame:
     frame = frame[frame["place"] < 2]
     cells = frame.groupby(["participant", "picture", "place"], as_index=False)["rating"].mean()
     both = cells.groupby(["participant", "picture"])["place"].transform("size") == 2
-    return cells.loc[both]
+    return pd.DataFrame(cells[both])
 
 
 def stability(pairs: pd.DataFrame) -> Entry:

@@ -1,5 +1,6 @@
 """The report: one page to read, tables and figures to reuse, numbers for machines."""
 
+import sys
 from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
@@ -62,7 +63,7 @@ def write_report(
     drawings = [drawing for section in sections for drawing in section.drawings]
     notes = [*evidence.notes, *(sentence for section in sections for sentence in section.warnings)]
     said = [*remarks(study, plan, sample, frame, evidence.main, notes), *letters_missing(drawings)]
-    tables = {name: table for section in sections for name, table in section.tables.items()}
+    tables = {name: without_zero_p(table) for section in sections for name, table in section.tables.items()}
     origin = provenance(ratings, frame, study, command or f"write_report({ratings.name})")
     results = results_json(study, plan, sample, tables, said, origin)
     save(out, render_page(evidence, sections, said, origin), results, tables, drawings)
@@ -90,6 +91,12 @@ def results_json(
         "warnings": said,
         "session": origin,
     }
+
+
+def without_zero_p(table: pd.DataFrame) -> pd.DataFrame:
+    """No p is 0: what float64 cannot hold becomes the smallest number that it holds at full precision, a bound."""
+    names = [name for name in table.columns if name == "p" or str(name).startswith("p_") or str(name).endswith("_p")]
+    return table.assign(**{name: table[name].where(table[name] != 0, sys.float_info.min) for name in names})
 
 
 def refuse_contradictions(has_study: bool, wide: str | None, factors: Mapping[str, str] | None) -> None:
