@@ -150,10 +150,9 @@ def effect_in_factorial(row: Row, ratings: pd.DataFrame) -> dict[str, Any] | str
         return None
     whole = row.crossed
     try:
-        table = FactorialAnova(whole.value, whole.names, whole.subject)(whole.frame(ratings))
+        found = first_row(FactorialAnova(whole.value, whole.names, whole.subject, row.name)(whole.frame(ratings)))
     except Undefined as reason:
         return str(reason)
-    found = first_row(table[table["effect"] == row.name])
     assert found is not None
     return found["reason"] or found
 
