@@ -5,6 +5,7 @@ from dataclasses import dataclass
 from math import comb
 from typing import Any
 
+import numpy as np
 import pandas as pd
 
 from analysis.plan import EquivalencePlan
@@ -36,6 +37,15 @@ class Judged:
     def named(self, pair: dict[str, Any]) -> str:
         """The two samples, of which the second is subtracted."""
         return f"{self.labels[pair['a']]} minus {self.labels[pair['b']]}"
+
+    @property
+    def spreads(self) -> list[float]:
+        """The standard deviation of people's differences, of each undecided pair; empty between different people."""
+        if self.each.mode != "repeated":
+            return []
+        undecided = self.pairs[self.pairs["verdict"] == "undecided"]
+        errors = 2 * self.margin / (undecided["t_low"] - undecided["t_high"])  # t_low, t_high: (mean ± margin) / error
+        return [float(spread) for spread in errors * np.sqrt(undecided["n_a"])]
 
     @property
     def shown(self) -> bool:

@@ -10,6 +10,7 @@ from analysis.margins import Judged, equivalence_table, judge
 from analysis.plan import EquivalencePlan
 from analysis.section import Section, rendered
 from analysis.statistics.equivalence import UNTESTED
+from analysis.statistics.equivalence_power import people_for_equivalence
 from analysis.tables import Table
 from analysis.wording import apa_df, apa_p, counted, joined, sentence_case, signed, thesis_p
 
@@ -38,6 +39,7 @@ def equivalence(evidence: Evidence) -> Section | None:
         level=1 - 2 * plan.alpha,
         table=table_of_equivalence(judged, plan),
         drawings=drawings,
+        people=people_needed(judged),
         said=said,
     )
     tables = {"equivalence": equivalence_table(judged)}
@@ -73,6 +75,21 @@ def summaries(judged: Sequence[Judged]) -> tuple[str, ...]:
     return tuple(said)
 
 
+def people_needed(judged: Sequence[Judged]) -> list[str]:
+    """One sentence per question: how many people would show its undecided pairs to be alike."""
+    said = []
+    for question, margin, alpha in dict.fromkeys((one.each.row.question, one.margin, one.alpha) for one in judged):
+        spreads = [spread for one in judged if one.each.row.question == question for spread in one.spreads]
+        if spreads:
+            few, many = (people_for_equivalence(end(spreads), margin, alpha=alpha) for end in (min, max))
+            number = f"{few}" if few == many else f"{few} to {many}"
+            said.append(
+                f"{sentence_case(question)}: with the spread of the undecided pairs it takes {number} people to show "
+                "two pictures alike (in 80% of studies, if they are exactly alike)."
+            )
+    return said
+
+
 def table_of_equivalence(judged: Sequence[Judged], plan: EquivalencePlan) -> Table | None:
     """Every pair of the rows that a page can hold."""
     rows = [
@@ -85,8 +102,8 @@ def table_of_equivalence(judged: Sequence[Judged], plan: EquivalencePlan) -> Tab
     head = ("Configuration", "Pair", "Verdict", "Difference", interval, "p TOST", "Holm", "p diff.")
     note = (
         "p TOST: the larger of the two one-sided tests; it decides with p diff., the two-sided t test, each at "
-        f"α = {plan.alpha:g}. Holm: p TOST adjusted for the number of pairs of the row. One pair chosen after seeing all "
-        "needs the adjusted p; the claim that all pairs of a row are alike does not."
+        f"α = {plan.alpha:g}. Holm: p TOST adjusted for the number of pairs of the row. One pair chosen after seeing "
+        "all needs the adjusted p; the claim that all pairs of a row are alike does not."
     )
     caption = "Two one-sided tests of every pair"
     return Table("table-equivalence", caption, head, tuple(rows), text_columns=3, note=note) if rows else None

@@ -2,10 +2,12 @@
 
 import math
 
-import numpy as np
-from scipy import integrate, stats
+from scipy import integrate, special, stats
+
+from analysis.statistics.undefined import Floats
 
 MOST_PEOPLE = 1_000_000
+NODES = 200  # of Gauss and Legendre, over a smooth density
 
 
 def equivalence_power(n: int, sd: float, margin: float, difference: float = 0.0, alpha: float = 0.05) -> float:
@@ -19,16 +21,17 @@ def equivalence_power(n: int, sd: float, margin: float, difference: float = 0.0,
     df, root = n - 1, math.sqrt(n)
     critical = float(stats.t.isf(alpha, df))
 
-    def inside(chi: float) -> float:
+    def inside(chi: Floats) -> Floats:
         room = margin - critical * sd * chi / math.sqrt(df) / root
-        ends = (np.array([room, -room]) - difference) * root / sd
-        return float((stats.norm.cdf(ends[0]) - stats.norm.cdf(ends[1])) * stats.chi.pdf(chi, df))
+        above, below = ((end - difference) * root / sd for end in (room, -room))
+        density: Floats = (special.ndtr(above) - special.ndtr(below)) * stats.chi.pdf(chi, df)
+        return density
 
     widest = margin * root * math.sqrt(df) / (critical * sd)  # beyond it no mean is near enough
     low, high = (float(stats.chi.ppf(tail, df)) for tail in (1e-12, 1 - 1e-12))
     if widest <= low:
         return 0.0
-    return float(integrate.quad(inside, low, min(high, widest), epsabs=1e-10, limit=200)[0])
+    return float(integrate.fixed_quad(inside, low, min(high, widest), n=NODES)[0])
 
 
 def people_for_equivalence(sd: float, margin: float, power: float = 0.80, alpha: float = 0.05) -> int | None:
