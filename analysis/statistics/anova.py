@@ -10,7 +10,7 @@ from pandas.errors import Pandas4Warning
 from scipy import stats
 
 from analysis.statistics.effect_size import eta_squared_interval
-from analysis.statistics.undefined import Undefined, complete_table, groups_of, residuals
+from analysis.statistics.undefined import Undefined, complete_table, groups_of, not_zero, residuals
 
 EFFECT_LEVEL = 0.90  # the interval that excludes 0 exactly when a one-sided F test at .05 is significant
 ROUNDING = 1e-12  # a residual this small against the total is what float64 leaves of an exact zero
@@ -39,7 +39,7 @@ class OneWayAnova:
         low, high = eta_squared_interval(eta, df1, df2, EFFECT_LEVEL)
         # scipy.stats.f_oneway loses a digit of F by squaring sums; its p is the same survival function
         f = (between / df1) / (within / df2)
-        row = {"F": f, "df1": df1, "df2": df2, "p": float(stats.f.sf(f, df1, df2))}
+        row = {"F": f, "df1": df1, "df2": df2, "p": not_zero(stats.f.sf(f, df1, df2))}
         row |= {"ss_between": between, "ss_within": within, "ms_within": within / df2}
         row |= {"eta_squared": eta, "ci_low": low, "ci_high": high, "n": len(everything), "k": len(parts)}
         return pd.DataFrame([row])
@@ -69,7 +69,7 @@ class RepeatedMeasuresAnova:
         ss_error = float((residuals(wide.to_numpy()) ** 2).sum())
         ss_subject = float(wide.shape[1] * ((wide.mean(axis=1) - wide.to_numpy().mean()) ** 2).sum())
         df1, df2 = int(effect["DF"]), int(error["DF"])
-        row = {"F": float(effect["F"]), "df1": df1, "df2": df2, "p": float(effect["p_unc"])}
+        row = {"F": float(effect["F"]), "df1": df1, "df2": df2, "p": not_zero(effect["p_unc"])}
         row |= {"ss_effect": float(effect["SS"]), "ss_subject": ss_subject, "ss_error": ss_error}
         row |= {"ms_error": ss_error / df2, **sphericity(wide, row["F"], df1, df2)}
         row |= effect_sizes(row["ss_effect"], ss_subject, ss_error, df1, df2)
@@ -104,7 +104,7 @@ def library_anova(wide: pd.DataFrame) -> pd.DataFrame:
 def sphericity(wide: pd.DataFrame, f: float, df1: int, df2: int) -> dict[str, float]:
     """Both epsilons, the p values they give, and Mauchly's test where it means something."""
     if wide.shape[1] == 2:
-        p = float(stats.f.sf(f, df1, df2))
+        p = not_zero(stats.f.sf(f, df1, df2))
         return {"epsilon_gg": 1.0, "p_gg": p, "epsilon_hf": 1.0, "p_hf": p, "mauchly_w": np.nan, "mauchly_p": np.nan}
     gg = float(pingouin.epsilon(wide, correction="gg"))
     # of as many people as levels, an even spread leaves Huynh and Feldt's fraction nothing to divide by: its limit is 1
@@ -114,7 +114,7 @@ def sphericity(wide: pd.DataFrame, f: float, df1: int, df2: int) -> dict[str, fl
     if len(wide) > wide.shape[1]:
         test = pingouin.sphericity(wide)
         w, p_mauchly = float(test.W), float(test.pval)
-    corrected = {f"p_{name}": float(stats.f.sf(f, df1 * e, df2 * e)) for name, e in (("gg", gg), ("hf", hf))}
+    corrected = {f"p_{name}": not_zero(stats.f.sf(f, df1 * e, df2 * e)) for name, e in (("gg", gg), ("hf", hf))}
     return {"epsilon_gg": gg, "epsilon_hf": hf, **corrected, "mauchly_w": w, "mauchly_p": p_mauchly}
 
 

@@ -9,7 +9,7 @@ import pandas as pd
 from scipy import stats
 from statsmodels.stats.multitest import multipletests
 
-from analysis.statistics.undefined import Floats, complete_table
+from analysis.statistics.undefined import SMALLEST_P, Floats, complete_table
 
 AT_ONCE = 512
 Indices = npt.NDArray[np.intp]
@@ -71,7 +71,7 @@ class PairedContrasts:
         found = stats.ttest_1samp(varied, 0.0, axis=0)
         interval = found.confidence_interval(self.confidence)
         d_z = mean / varied.std(axis=0, ddof=1)
-        undefined = {"t": found.statistic, "p": found.pvalue, "d_z": d_z}
+        undefined = {"t": found.statistic, "p": np.maximum(found.pvalue, SMALLEST_P), "d_z": d_z}
         limits = {"ci_low": interval.low, "ci_high": interval.high}
         return (
             {"difference": mean, "df": np.full(len(mean), n - 1), "n": np.full(len(mean), n)}

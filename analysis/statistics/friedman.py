@@ -6,7 +6,7 @@ import numpy as np
 import pandas as pd
 from scipy import stats
 
-from analysis.statistics.undefined import Undefined, complete_table
+from analysis.statistics.undefined import Undefined, complete_table, not_zero
 
 
 @dataclass(frozen=True)
@@ -28,9 +28,11 @@ class Friedman:
         where = f"{self.value} by {self.within}"
         if k < 3:
             raise Undefined(f"{where}: Friedman's test needs three levels and there are {k}; use Wilcoxon's test")
-        if (np.ptp(wide.to_numpy(), axis=1) == 0).all():
+        # means over pictures that are equal may differ in the last bits, and ranks would take that for a difference
+        ranked = wide.round(9).to_numpy()
+        if (np.ptp(ranked, axis=1) == 0).all():
             raise Undefined(f"{where}: everyone rated all levels the same, so there are no ranks to compare")
-        found = stats.friedmanchisquare(*(wide[level] for level in wide.columns))
+        found = stats.friedmanchisquare(*ranked.T)
         chi2 = float(found.statistic)
-        row = {"chi2": chi2, "df": k - 1, "p": float(found.pvalue), "kendalls_w": chi2 / (n * (k - 1))}
+        row = {"chi2": chi2, "df": k - 1, "p": not_zero(float(found.pvalue)), "kendalls_w": chi2 / (n * (k - 1))}
         return pd.DataFrame([{**row, "n": n, "k": k, "dropped": "; ".join(dropped)}])

@@ -9,6 +9,12 @@ from scipy import stats
 from analysis.statistics.undefined import complete_table, require_columns
 
 
+def first_of(values: "pd.Series[float]") -> float:
+    """The first value there is: what others are counted from, so that squares keep their digits."""
+    present = values.dropna()
+    return float(present.iloc[0]) if len(present) else 0.0
+
+
 @dataclass(frozen=True)
 class MeanIntervals:
     """The mean of each level with its t interval.
@@ -27,18 +33,24 @@ class MeanIntervals:
         """The table for a long `frame`, one row per rating."""
         require_columns(frame, self.value, self.group)
         if self.subject is None:
-            samples = {level: part[self.value].dropna() for level, part in frame.groupby(self.group, observed=True)}
-            return pd.DataFrame([self.row(level, part, part) for level, part in samples.items()])
+            origin = first_of(frame[self.value])
+            samples = {
+                level: part.dropna() - origin for level, part in frame.groupby(self.group, observed=True)[self.value]
+            }
+            return pd.DataFrame([self.row(level, part, part, origin) for level, part in samples.items()])
         complete_table(frame, self.value, self.group, self.subject)  # refuses what has no within-person interval
-        wide = frame.pivot(index=self.subject, columns=self.group, values=self.value).dropna()
+        origin = first_of(frame[self.value])
+        wide = frame.pivot(index=self.subject, columns=self.group, values=self.value).dropna() - origin
         k = wide.shape[1]
         centred = wide.sub(wide.mean(axis=1), axis=0) * np.sqrt(k / (k - 1))
-        return pd.DataFrame([self.row(level, wide[level], centred[level]) for level in wide.columns])
+        return pd.DataFrame([self.row(level, wide[level], centred[level], origin) for level in wide.columns])
 
-    def row(self, level: object, raw: "pd.Series[float]", spread: "pd.Series[float]") -> dict[str, object]:
-        """Mean and SD of `raw`, interval from the variance of `spread`."""
+    def row(
+        self, level: object, raw: "pd.Series[float]", spread: "pd.Series[float]", origin: float
+    ) -> dict[str, object]:
+        """Mean (`raw` counts from `origin`) and SD of `raw`, interval from the variance of `spread`."""
         n = len(raw)
-        mean = float(raw.mean())
+        mean = origin + float(raw.mean())
         half = float(stats.t.ppf((1 + self.confidence) / 2, n - 1) * spread.std() / np.sqrt(n)) if n > 1 else np.nan
         return {
             "level": level,

@@ -8,6 +8,12 @@ from analysis.labels import levels_of
 from fakesss.problem import BadInput, nearest
 
 Floats = npt.NDArray[np.float64]
+SMALLEST_P = float(np.finfo(np.float64).tiny)
+
+
+def not_zero(p: float) -> float:
+    """No p value is 0: one too small for a float64 stands as the bound 2.2e-308."""
+    return max(float(p), SMALLEST_P)
 
 
 class Undefined(BadInput):

@@ -5,7 +5,7 @@ from dataclasses import dataclass
 import pandas as pd
 from scipy import stats
 
-from analysis.statistics.undefined import Undefined, complete_table
+from analysis.statistics.undefined import Undefined, complete_table, not_zero
 
 
 @dataclass(frozen=True)
@@ -36,5 +36,11 @@ class SignedRanks:
         found = stats.wilcoxon(unequal.to_numpy())
         ranks = unequal.abs().rank()
         r = float((ranks * ((unequal > 0) * 2 - 1)).sum() / ranks.sum())
-        row = {"t": float(found.statistic), "p": float(found.pvalue), "r": r, "n": len(wide), "n_unequal": len(unequal)}
+        row = {
+            "t": float(found.statistic),
+            "p": not_zero(float(found.pvalue)),
+            "r": r,
+            "n": len(wide),
+            "n_unequal": len(unequal),
+        }
         return pd.DataFrame([{**row, "dropped": "; ".join(dropped)}])
