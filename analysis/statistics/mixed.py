@@ -1,38 +1,19 @@
 """Ratings as people's and pictures' own levels around the factors' effects: linear mixed models."""
 
-import warnings
 from collections.abc import Mapping
 from dataclasses import dataclass
 
 import numpy as np
-import numpy.typing as npt
 import pandas as pd
-from statsmodels.regression.linear_model import OLS
-from statsmodels.regression.mixed_linear_model import MixedLM, VCSpec
 
 from analysis.statistics.design_matrix import coding_of, refuse_empty_cells
-from analysis.statistics.undefined import Floats, Undefined, require_columns
+from analysis.statistics.reml import Codes, Estimate, estimate
+from analysis.statistics.undefined import Undefined, require_columns
 from analysis.statistics.wald import wald_tests
 from analysis.wording import joined
 
-MOST_WORK = 2e8  # about 5 s, measured: see `work`
+MOST_WORK = 1.5e8  # about 4 s, measured: see `work`
 WORK_OF_A_PERSON = 2e4
-NOTHING = 1e-5  # a share of the variance this small is a variance of 0, as far as the search can tell
-Codes = npt.NDArray[np.int64]
-
-
-@dataclass(frozen=True)
-class Estimate:
-    """What the likelihood's maximum gives: fixed effects (the constant first), their covariance, and variances.
-
-    `variances`: of each random term that was fitted; `dropped`: terms whose variance was 0.
-    """
-
-    effects: Floats
-    covariance: Floats
-    variances: Mapping[str, float]
-    residual: float
-    dropped: tuple[str, ...]
 
 
 @dataclass(frozen=True)
@@ -151,68 +132,6 @@ def refuse_work(title: str, rows: int, columns: int, random: Mapping[str, Codes]
             f"{title}: a mixed model of {rows} ratings, {columns} fixed effects and {size} would take minutes, so it "
             "is not fitted"
         )
-
-
-def estimate(title: str, values: Floats, fixed: Floats, random: Mapping[str, Codes]) -> Estimate:
-    """The REML estimate; a random term whose variance is 0 is dropped, and the model fitted again without it.
-
-    `values` are centred and scaled first: statsmodels' search and its limits are made for variances near 1. Raises
-    `Undefined` where there is nothing to estimate.
-    """
-    centred = values - values[0]
-    centred = centred - centred.mean()
-    spread = float(np.sqrt(np.mean(centred**2)))
-    if spread == 0:
-        raise Undefined(f"{title}: all ratings are equal, so there is no variance to divide")
-    if len(values) <= fixed.shape[1]:
-        raise Undefined(f"{title}: {len(values)} ratings for {fixed.shape[1]} fixed effects; nothing is left over")
-    terms, dropped = dict(random), []
-    while True:
-        effects, covariance, variances, residual = searched(title, centred / spread, fixed, terms)
-        total = sum(variances.values()) + residual
-        smallest = min(variances, key=lambda name: variances[name], default=None)
-        if smallest is None or variances[smallest] > NOTHING * total:
-            break
-        dropped.append(smallest)
-        del terms[smallest]
-    if not residual > 1e-8 * total:
-        raise Undefined(f"{title}: the model leaves no residual, so there is nothing to test effects against")
-    scaled = {name: variance * spread**2 for name, variance in variances.items()}
-    return Estimate(effects * spread, covariance * spread**2, scaled, residual * spread**2, tuple(dropped))
-
-
-def searched(
-    title: str, values: Floats, fixed: Floats, random: Mapping[str, Codes]
-) -> tuple[Floats, Floats, dict[str, float], float]:
-    """Fixed effects, their covariance, variances and residual variance, from statsmodels."""
-    if not random:
-        plain = OLS(values, fixed).fit()
-        return plain.params, plain.cov_params(), {}, float(plain.scale)
-    with warnings.catch_warnings(), np.errstate(all="ignore"):
-        warnings.simplefilter("ignore")  # boundary and convergence are looked at below
-        try:
-            found = model_of(values, fixed, random).fit(reml=True, method=["bfgs", "lbfgs", "cg"], gtol=1e-8)
-        except (np.linalg.LinAlgError, ValueError):
-            raise Undefined(f"{title}: the model's matrices are singular, so it has no estimate") from None
-    parts = [float(found.cov_re[0, 0])] if len(random) == 1 else [float(part) for part in found.vcomp]
-    count = fixed.shape[1]
-    effects, covariance = np.asarray(found.fe_params), np.asarray(found.cov_params())[:count, :count]
-    if not (np.isfinite([*parts, found.scale, *effects]).all() and np.isfinite(covariance).all()):
-        raise Undefined(f"{title}: the model's matrices are singular, so it has no estimate")
-    # at a variance of 0 the search may end without its gradient's leave; the fit without the term then decides
-    if not found.converged and min(parts) > NOTHING * (sum(parts) + found.scale):
-        raise Undefined(f"{title}: the search for the likelihood's maximum did not converge")
-    return effects, covariance, dict(zip(random, parts, strict=True)), float(found.scale)
-
-
-def model_of(values: Floats, fixed: Floats, random: Mapping[str, Codes]) -> MixedLM:
-    """One random term: its labels are the groups. Several: crossed variance components within a single group."""
-    if len(random) == 1:
-        return MixedLM(values, fixed, groups=next(iter(random.values())))
-    columns = [np.eye(int(codes.max()) + 1)[codes] for codes in random.values()]
-    names = [[[f"{name}{place}" for place in range(part.shape[1])]] for name, part in zip(random, columns, strict=True)]
-    spec = VCSpec(list(random), names, [[part] for part in columns])
-    return MixedLM(values, fixed, groups=np.zeros(len(values)), exog_vc=spec)
 
 
 def variance_table(found: Estimate, terms: tuple[str, ...]) -> pd.DataFrame:

@@ -5,7 +5,8 @@ from dataclasses import dataclass
 import numpy as np
 import pandas as pd
 
-from analysis.statistics.mixed import codes_of, estimate, refuse_work, repeats, variance_table
+from analysis.statistics.mixed import codes_of, refuse_work, repeats, variance_table
+from analysis.statistics.reml import estimate
 from analysis.statistics.undefined import Undefined, require_columns
 
 
