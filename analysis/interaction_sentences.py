@@ -18,13 +18,16 @@ def significant(each: Analysed, plan: AnalysisPlan) -> bool:
 
 
 def meddlers(each: Analysed, found: Sequence[Analysed], plan: AnalysisPlan) -> list[str]:
-    """The factors that change a factor's effect: those it interacts with significantly on the same question."""
+    """The factors that change a factor's effect: those it interacts with significantly on the same question. None for
+    pictures compared."""
     mine = [
         other
         for other in found
         if other.row.kind == "interaction" and other.row.question == each.row.question and significant(other, plan)
     ]
-    names = [name for other in mine if set(each.row.factors) < set(other.row.factors) for name in other.row.factors]
+    names = [
+        name for other in mine if set() < set(each.row.factors) < set(other.row.factors) for name in other.row.factors
+    ]
     return [name for name in dict.fromkeys(names) if name not in each.row.factors]
 
 

@@ -47,12 +47,13 @@ def findings(study: StudyInfo, found: Sequence[Analysed], plan: AnalysisPlan) ->
 
 
 def words(each: Analysed, mine: Sequence[Analysed], question: Question, plan: AnalysisPlan) -> str:
-    """One finding; a main effect that an interaction bends is said to be an average."""
+    """One finding; an effect that a larger interaction bends is said to be an average."""
+    others = joined(meddlers(each, mine, plan))
     if each.row.kind == "interaction":
-        return interaction_sentence(each)
+        said = interaction_sentence(each)
+        return f"On average over {others}, {said[:1].lower()}{said[1:]}" if others else said
     said = effect_sentence(each, question, plan)
-    others = meddlers(each, mine, plan)
-    return f"On average over {joined(others)} it {said[:1].lower()}{said[1:]}" if others else said
+    return f"On average over {others} it {said[:1].lower()}{said[1:]}" if others else said
 
 
 def ordered_means(each: Analysed) -> pd.DataFrame:

@@ -12,7 +12,7 @@ from matplotlib.figure import Figure
 from matplotlib.layout_engine import ConstrainedLayoutEngine
 from matplotlib.offsetbox import AnnotationBbox, OffsetImage
 
-from analysis.figures.means import answer_scale, interval_name, label_scale
+from analysis.figures.means import ACROSS, answer_scale, interval_name, label_scale
 from analysis.figures.style import COLOURS, STYLE, THUMBNAIL, Drawing, drawn, thumbnail
 from analysis.results import Analysed
 from analysis.rows import Level
@@ -50,11 +50,15 @@ def layout_of(factors: Sequence[Factor]) -> Layout:
     return Layout(axis, lines, tuple(panels))
 
 
-def interaction_figure(study: StudyInfo, found: Sequence[Analysed], confidence: float) -> Drawing | None:
-    """A column of panels for each question, a row for each combination of third and further factors."""
+def interaction_figures(study: StudyInfo, found: Sequence[Analysed], confidence: float) -> list[Drawing]:
+    """The whole factorial of each question; of more than three questions a figure for every three."""
     whole = [each for each in found if each.row.crossed and each.row.factors == each.row.crossed.names and each.anova]
-    if not whole:
-        return None
+    parts = [whole[i : i + ACROSS] for i in range(0, len(whole), ACROSS)]
+    return [interaction_figure(study, part, confidence, f"-{i}" if i > 1 else "") for i, part in enumerate(parts, 1)]
+
+
+def interaction_figure(study: StudyInfo, whole: Sequence[Analysed], confidence: float, suffix: str) -> Drawing:
+    """A column of panels for each question, a row for each combination of third and further factors."""
     assert whole[0].row.crossed is not None
     layout = layout_of(whole[0].row.crossed.factors)
     combinations = list(product(*(factor.levels for factor in layout.panels)))
@@ -74,7 +78,7 @@ def interaction_figure(study: StudyInfo, found: Sequence[Analysed], confidence: 
             axes.set_xlabel(layout.axis.name)
             label_scale(axes, study.question(each.row.question), named=column == 0)
         grid[0][-1].legend(title=layout.lines.name, loc="upper left", bbox_to_anchor=(1, 1), frameon=False)
-        return drawn(figure, "figure-interaction", caption(study, whole, layout, confidence))
+        return drawn(figure, f"figure-interaction{suffix}", caption(study, whole, layout, confidence))
 
 
 def caption(study: StudyInfo, whole: Sequence[Analysed], layout: Layout, confidence: float) -> str:

@@ -15,7 +15,7 @@ from thesis_study import stimulus, write_manifest
 
 from analysis import FactorialAnova, write_report
 from analysis.evidence import Evidence, gather
-from analysis.figures.interaction import interaction_figure
+from analysis.figures.interaction import interaction_figures
 from analysis.page import lead
 from analysis.planned import planned_sentences, planned_table
 from analysis.ratings import read_ratings
@@ -153,9 +153,11 @@ def test_three_factors_one_of_them_named_like_a_column(tmp_path: Path) -> None:
         effect.words for finding in findings(evidence.study, evidence.main, evidence.plan) for effect in finding.effects
     ]
     assert any("How exponent and light work together depends on participant" in each for each in words)
+    assert any("On average over participant, the effect of light depends on exponent" in each for each in words)
+    assert any(each.startswith("Translucent: others vs ours: the pictures differ") for each in words)
     assert apa_sentence(last, evidence.plan).startswith("A 2 × 3 × 2 repeated-measures ANOVA")
-    drawing = interaction_figure(evidence.study, evidence.main, 0.95)
-    assert drawing is not None and "a row of panels for each level of participant" in drawing.caption
+    (drawing,) = interaction_figures(evidence.study, evidence.main, 0.95)
+    assert "a row of panels for each level of participant" in drawing.caption
 
 
 def test_without_one_picture_there_are_main_effects_and_a_sentence(tmp_path: Path) -> None:
