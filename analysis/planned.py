@@ -23,7 +23,7 @@ def planned_table(sample: Sample, plan: AnalysisPlan) -> tuple[pd.DataFrame, lis
         try:
             row = statistic(contrast, plan)(mine).iloc[0].to_dict()
         except Undefined as reason:
-            notes.append(f'contrast "{contrast.name}" on {contrast.question}: {reason}; left out.')
+            notes.append(f'contrast "{contrast.name}" on {contrast.question} is left out: {reason}')
             continue
         rows.append(
             {"contrast": contrast.name, "question": contrast.question, "weights": weights_text(contrast), **row}
