@@ -2,24 +2,13 @@
 
 import os
 import re
-import shutil
 import subprocess
 import tempfile
 from pathlib import Path
 
+from fakesss.browser import VARIABLE, find_browser
 from fakesss.problem import BadInput
 
-BROWSERS = (
-    "chromium",
-    "chromium-browser",
-    "google-chrome",
-    "google-chrome-stable",
-    "chrome",
-    "microsoft-edge",
-    "/Applications/Google Chrome.app/Contents/MacOS/Google Chrome",
-    "/Applications/Chromium.app/Contents/MacOS/Chromium",
-)
-VARIABLE = "FAKESSS_CHROMIUM"
 SWITCHES = (
     "--headless",
     "--disable-gpu",
@@ -38,9 +27,9 @@ MOMENT = re.compile(rb"(/(?:CreationDate|ModDate) ?\(D:)\d{14}")
 def write_pdf(page: Path, out: Path, timeout_s: float = 180) -> Path:
     """Prints the HTML file `page` into `out`; returns `out`.
 
-    The browser is the program that FAKESSS_CHROMIUM names, or else the first of `BROWSERS` on the PATH. It runs in a
-    profile of its own that is thrown away. The PDF holds no date of its making. Raises `BadInput` without a browser,
-    or where it fails or takes longer than `timeout_s` seconds.
+    The browser is the one that `fakesss.browser` finds; it runs in a profile of its own that is thrown away. The PDF
+    holds no date of its making. Raises `BadInput` without a browser, or where it fails or takes longer than
+    `timeout_s` seconds.
     """
     browser = find_browser()
     with tempfile.TemporaryDirectory(prefix="fakesss-pdf-", ignore_cleanup_errors=True) as folder:
@@ -61,22 +50,6 @@ def write_pdf(page: Path, out: Path, timeout_s: float = 180) -> Path:
 def for_paper(html: str) -> str:
     """The page on A4, without links to the files beside it: a PDF would hold this machine's paths in them."""
     return LINK_TO_FILE.sub("<a>", html).replace("</head>", PAPER, 1)
-
-
-def find_browser() -> str:
-    """The program that prints; `BadInput` in one sentence where there is none."""
-    named = os.environ.get(VARIABLE)
-    if named:
-        found = shutil.which(named)
-        if found is None:
-            raise BadInput(f"{VARIABLE}: {named} is no program that can be run; name a Chromium or Chrome")
-        return found
-    path = next(filter(None, map(shutil.which, BROWSERS)), None)
-    if path is None:
-        raise BadInput(
-            f"--pdf: needs Chromium or Chrome, and none is on the PATH; apt-get install chromium, or set {VARIABLE}"
-        )
-    return path
 
 
 def sandbox() -> tuple[str, ...]:

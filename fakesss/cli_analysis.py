@@ -69,7 +69,8 @@ def report(study: Path | None, out: Path | None, database: str | None, pdf: bool
 
 def pdf_printer(out: Path) -> Callable[[], Path]:
     """What prints the report in `out`; a browser is looked for now, before an analysis that may take long."""
-    from analysis.pdf import find_browser, write_pdf
+    from analysis.pdf import write_pdf
+    from fakesss.browser import find_browser
 
     find_browser()
     return lambda: write_pdf(out / "index.html", out / "report.pdf")

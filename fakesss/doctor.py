@@ -1,6 +1,5 @@
 """`fakesss doctor`: what this machine has of what a study needs, and the line that mends what is missing."""
 
-import shutil
 import sqlite3
 import sys
 import tempfile
@@ -10,10 +9,11 @@ from importlib.metadata import version
 from pathlib import Path
 from typing import Any
 
+from fakesss import browser as browsers
 from fakesss.gpu import MEND, shared
 from fakesss.problem import BadInput
 
-BROWSERS = ("chromium", "chromium-browser", "google-chrome", "google-chrome-stable")
+OPTIONAL = "report --pdf, the tests"
 
 
 @dataclass(frozen=True)
@@ -35,13 +35,13 @@ def look() -> list[Finding]:
         finding("Embree", embree, "ambient occlusion", "pip install embreex"),
         finding("database", database, "the survey", "use a Python built with SQLite 3.35 or newer"),
         finding("cache folder", cache_folder, "keeping baked occlusion", "set FAKESSS_CACHE to a writable folder"),
-        finding("browser", browser, "the tests", "apt-get install chromium"),
+        finding("browser", browser, OPTIONAL, browsers.MEND),
     ]
 
 
 def report(findings: list[Finding]) -> dict[str, Any]:
     """The findings as one JSON document; `ok` means that a study can be built and served."""
-    ok = all(f.found for f in findings if f.needed_for != "the tests")
+    ok = all(f.found for f in findings if f.needed_for != OPTIONAL)
     return {"ok": ok, "findings": [asdict(f) for f in findings]}
 
 
@@ -103,8 +103,8 @@ def cache_folder() -> str:
 
 
 def browser() -> str:
-    """A Chromium that the browser tests can drive."""
-    path = next((found for name in BROWSERS if (found := shutil.which(name))), None)
-    if path is None:
-        raise BadInput("no Chromium on the PATH")
-    return path
+    """A Chromium that prints reports and that the browser tests can drive."""
+    try:
+        return browsers.find_browser()
+    except BadInput as error:
+        raise BadInput(str(error).removesuffix(f"; {browsers.MEND}").removeprefix("browser: ")) from None

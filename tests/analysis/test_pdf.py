@@ -7,7 +7,8 @@ from pathlib import Path
 
 import pytest
 
-from analysis.pdf import VARIABLE, find_browser, for_paper, write_pdf
+from analysis.pdf import for_paper, write_pdf
+from fakesss.browser import VARIABLE, find_browser
 from fakesss.problem import BadInput
 
 PAGE = """<!doctype html><html><head><title>Glow &amp; haze</title>
@@ -42,7 +43,7 @@ def test_without_a_browser(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> N
     monkeypatch.delenv(VARIABLE, raising=False)
     monkeypatch.setenv("PATH", str(tmp_path))
     with pytest.raises(
-        BadInput, match=r"--pdf: needs Chromium or Chrome, .* apt-get install chromium, or set FAKESSS_CH"
+        BadInput, match=r"no Chromium or Chrome is on the PATH; apt-get install chromium, or set FAKESSS_CHROMIUM"
     ):
         find_browser()
 
