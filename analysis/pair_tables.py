@@ -9,6 +9,7 @@ from analysis.results import Analysed
 from analysis.tables import SHOWN_LEVELS, Table
 from analysis.wording import apa_df, no_zero, sentence_case, signed, thesis_p
 
+SHOWN_EFFECTS = 24  # simple effects of an interaction; more stand in tables/simple_effects.csv
 CHOSEN = {"all": "all pairs", "reference": "each level with the first", "neighbours": "levels that follow each other"}
 
 
@@ -61,10 +62,10 @@ def t_test_cells(pair: "dict[object, float] | pd.Series[float]") -> tuple[str, .
 
 
 def table_of_simple_effects(found: Iterable[Analysed]) -> Table | None:
-    """What each interaction consists of; None without interactions."""
+    """What each interaction consists of; None where none is small enough for the page."""
     rows = []
     for each in found:
-        if each.simple is None:
+        if each.simple is None or len(each.simple) > SHOWN_EFFECTS:
             continue
         for place, part in enumerate(each.simple.to_dict("records")):
             title = "" if place else sentence_case(each.row.question)
@@ -72,7 +73,8 @@ def table_of_simple_effects(found: Iterable[Analysed]) -> Table | None:
     head = ("Question", "Effect of", "F", "df", "p", "p Holm", "η²p", "90% CI")
     note = (
         "The effect of one factor with the others held, Greenhouse–Geisser corrected, each with its own error. p Holm: "
-        "adjusted over the effects of an interaction. η²p: partial eta squared. A dash: no spread to test against."
+        "adjusted over the effects of an interaction. η²p: partial eta squared. A dash: no spread to test against. "
+        "They follow up an interaction: without a significant one they only repeat the main effects."
     )
     return Table("table-simple", "Simple effects", head, tuple(rows), text_columns=2, note=note) if rows else None
 

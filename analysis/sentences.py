@@ -13,6 +13,7 @@ from analysis.study import Question, StudyInfo
 from analysis.wording import apa_df, apa_p, joined, no_zero, sentence_case, signed
 
 ORDER = ("factor", "interaction", "comparison", "all")
+LISTED = 12  # the means of more samples stand in tables/means.csv
 
 
 @dataclass(frozen=True)
@@ -77,7 +78,8 @@ def effect_sentence(each: Analysed, question: Question, plan: AnalysisPlan) -> s
     """Direction, the means, and the largest difference with its simultaneous interval."""
     table = ordered_means(each)
     top, bottom = table.iloc[int(table["mean"].argmax())], table.iloc[int(table["mean"].argmin())]
-    at = [f"{mean:.2f} at {label}" for mean, label in zip(table["mean"], table["label"], strict=True)]
+    named = table if len(table) <= LISTED else table.loc[[bottom.name, top.name]]
+    at = [f"{mean:.2f} at {label}" for mean, label in zip(named["mean"], named["label"], strict=True)]
     head = f"{direction(each, table)}: {joined(at)}." if each.row.kind == "factor" else picture_head(each, top, bottom)
     low, high = pair_interval(each, top["level"], bottom["level"])
     what = "points"
@@ -159,6 +161,8 @@ def apa_sentence(each: Analysed, plan: AnalysisPlan) -> str:
         f"{label}: M = {mean:.2f}, SD = {sd:.2f}"
         for label, mean, sd in ordered_means(each)[["label", "mean", "sd"]].itertuples(index=False)
     ]
+    if len(cells) > LISTED:
+        cells = [f"{len(cells)} means in tables/means.csv"]
     where = f" ({each.row.name})" if each.row.kind == "comparison" else ""
     return (
         f"A {design(each)}{corrected} with {people(each)} showed {verdict} "

@@ -21,7 +21,7 @@ def interactions(evidence: Evidence) -> Section | None:
         "interactions",
         "Interactions",
         body,
-        {"simple_effects": simple_table(found)} if simple is not None else {},
+        {"simple_effects": simple_table(found)},
         tuple(drawings),
         sentences=tuple(sentence for sentence in sentences if sentence),
     )
