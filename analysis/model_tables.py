@@ -1,13 +1,16 @@
 """Tables for the page of what the models say."""
 
-from collections.abc import Sequence
+from collections.abc import Hashable, Sequence
+from typing import Any
 
 import pandas as pd
 
 from analysis.models import Modelled
 from analysis.tables import SHOWN_LEVELS, Table
-from analysis.verdicts import NAMES, tested_rows, verdict
+from analysis.verdicts import NAMES, finders, tested_rows
 from analysis.wording import joined, thesis_p
+
+PARTS = {"participant": "People", "picture": "Pictures", "residual": "Residual"}
 
 
 def table_of_verdicts(fitted: Sequence[Modelled], alpha: float) -> Table | None:
@@ -23,7 +26,7 @@ def table_of_verdicts(fitted: Sequence[Modelled], alpha: float) -> Table | None:
                 test = model.test(model.ordinal if name == "ordinal" else model.mixed, each)
                 cells.append("" if test is None else f"{test['chi2']:.2f} ({test['df']})")
             cells.append(thesis_p(p[name]) if name in p else "")
-        rows.append((each.row.title, *cells, verdict(p, alpha)))
+        rows.append((each.row.title, finders(p, alpha), *cells))
     head = [
         text
         for name in names
@@ -36,8 +39,9 @@ def table_of_verdicts(fitted: Sequence[Modelled], alpha: float) -> Table | None:
     return Table(
         "table-models",
         f"The same question put to {len(names)} tests",
-        ("Configuration", *head, f"At the {alpha:.0%} level"),
+        ("Configuration", f"Effect at {alpha:.0%} by", *head),
         tuple(rows),
+        text_columns=2,
         note="p without adjustment for the number of tests. χ² of the models: Wald's joint test, which takes the "
         "number of people as large.",
     )
@@ -92,25 +96,28 @@ def table_of_variances(fitted: Sequence[Modelled]) -> Table | None:
             continue
         title = model.found[-1].row.title
         by_term = {str(row["term"]).rstrip("'"): row for row in model.mixed.variances.to_dict("records")}
-        cells = [
-            f"{by_term[name]['variance']:.3f} ({by_term[name]['share']:.0%})" if name in by_term else ""
-            for name in ("participant", "picture", "residual")
-        ]
+        cells = [part_text(by_term.get(name)) for name in PARTS]
         rows.append((title, *cells, str(model.mixed.n)))
         for why in model.mixed.left_out:
             lacks.setdefault(why, []).append(title)
     if not rows:
         return None
+    used = [0, *(place for place in range(1, 5) if any(row[place] for row in rows))]
     everywhere = [why for why, titles in lacks.items() if len(titles) == len(rows)]
     notes = [f"In every row {why}." for why in everywhere]
     notes += [f"{joined(titles)}: {why}." for why, titles in lacks.items() if why not in everywhere]
     return Table(
         "table-mixed",
         "Variances of the mixed models, beside the factors' effects (share of their sum)",
-        ("Configuration", "People", "Pictures", "Residual", "Ratings"),
-        tuple(rows),
+        tuple(("Configuration", *PARTS.values(), "Ratings")[place] for place in used),
+        tuple(tuple(row[place] for place in used) for row in rows),
         note=" ".join(notes),
     )
+
+
+def part_text(part: dict[Hashable, Any] | None) -> str:
+    """Variance and share; empty for a term that the model lacks."""
+    return "" if part is None else f"{part['variance']:.3f} ({part['share']:.0%})"
 
 
 def table_of_shares(shares: pd.DataFrame) -> Table | None:
@@ -119,7 +126,7 @@ def table_of_shares(shares: pd.DataFrame) -> Table | None:
         return None
     rows = []
     for question, part in shares.groupby("question", sort=False):
-        cells = {row["term"]: f"{row['variance']:.3f} ({row['share']:.0%})" for row in part.to_dict("records")}
+        cells = {row["term"]: part_text(row) for row in part.to_dict("records")}
         rows.append((str(question), cells["picture"], cells["participant"], cells["residual"], str(part["n"].iloc[0])))
     return Table(
         "table-variance",

@@ -19,14 +19,19 @@ def tested_rows(models: Sequence[Modelled]) -> Iterator[tuple[Analysed, dict[str
             yield each, {name: value for name, value in p.items() if value is not None}
 
 
-def verdict(p: dict[str, float], alpha: float) -> str:
-    """Who finds an effect at `alpha`: "all", "none", or who stands apart. Empty for fewer than two tests."""
+def finders(p: dict[str, float], alpha: float) -> str:
+    """Who finds an effect at `alpha`, for a table: all, none, all but one, or by name."""
     yes = [NAMES[name] for name, value in p.items() if value < alpha]
     no = [NAMES[name] for name, value in p.items() if not value < alpha]
-    if len(yes) + len(no) < 2:
-        return ""
     if not yes or not no:
-        return "all find an effect" if yes else "none finds an effect"
+        return "" if not p else "all" if yes else "none"
+    return f"all but {no[0]}" if len(no) == 1 < len(yes) else joined(yes)
+
+
+def verdict(p: dict[str, float], alpha: float) -> str:
+    """Who stands apart from whom, for a sentence about tests that disagree."""
+    yes = [NAMES[name] for name, value in p.items() if value < alpha]
+    no = [NAMES[name] for name, value in p.items() if not value < alpha]
     if len(no) == 1 < len(yes):
         return f"only {no[0]} {finds(no)} none"
     if len(yes) == 1 < len(no):
