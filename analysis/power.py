@@ -2,16 +2,20 @@
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
+from functools import cache
+from math import inf
+from typing import Any
 
 import numpy as np
 import numpy.typing as npt
+from scipy import special
 from statsmodels.stats.proportion import proportion_confint
 
 from analysis.planned_tests import PlannedTest
 from analysis.statistics.batches import Moments, adjusted_p
 from analysis.statistics.undefined import Floats
 
-Draw = Callable[[str, int, int, np.random.Generator], Floats]
+Draw = Callable[[str, int, int, np.random.Generator], npt.NDArray[np.floating[Any]]]
 Progress = Callable[[int, int], None]
 FEWEST = 2
 CONFIDENCE = 0.95
@@ -27,11 +31,12 @@ class Power:
     low: float
     high: float
 
-    @classmethod
-    def of(cls, rejections: int, studies: int) -> "Power":
-        """From a count."""
-        low, high = proportion_confint(rejections, studies, alpha=1 - CONFIDENCE, method="beta")
-        return cls(rejections / studies, float(low), float(high))
+
+@cache
+def power_of(rejections: int, studies: int) -> Power:
+    """From a count."""
+    low, high = proportion_confint(rejections, studies, alpha=1 - CONFIDENCE, method="beta")
+    return Power(rejections / studies, float(low), float(high))
 
 
 @dataclass
@@ -89,36 +94,50 @@ class Simulation:
 
     def power(self, test: int, people: int) -> Power:
         """Of the test at index `test`; `people` must be simulated."""
-        return Power.of(self.found[people][test], self.studies)
+        return power_of(self.found[people][test], self.studies)
 
 
 @dataclass(frozen=True)
 class Bracket:
-    """What the sizes simulated so far say of the smallest with enough power: more than `below`, at most `enough`."""
+    """What the sizes simulated so far say of the smallest with enough power: more than `below`, at most `enough`.
+
+    `at_below`, `at_enough`: the power, or a limit of it, with these.
+    """
 
     below: int | None
     enough: int | None
+    at_below: float = 0.0
+    at_enough: float = 1.0
 
     @property
     def closed(self) -> bool:
         """Whether the smallest size is known: `enough`."""
         return self.enough == FEWEST or (self.enough is not None and self.below == self.enough - 1)
 
-    def next(self, most: int) -> int | None:
-        """The size to simulate next; None where nothing is left to learn up to `most`."""
+    def next(self, target: float, most: int) -> int | None:
+        """The size to simulate next; None where nothing is left to learn up to `most`.
+
+        Doubles until it is enough. Then, the probit of power rising about as the root of the size, where a line reaches
+        the target; at least an eighth from both ends, so that every step takes a part of the bracket away.
+        """
         if self.closed or self.below == most:
             return None
         if self.enough is None:
             return min(most, max(2 * (self.below or 0), 8))
-        return ((self.below or FEWEST - 1) + self.enough) // 2
+        below = self.below or FEWEST - 1
+        low, high, wanted = map(float, special.ndtri(np.clip([self.at_below, self.at_enough, target], 1e-3, 1 - 1e-3)))
+        share = (wanted - low) / (high - low) if high > low else 0.5
+        guess: int = round((below**0.5 + share * (self.enough**0.5 - below**0.5)) ** 2)
+        margin = max(1, (self.enough - below) // 8)
+        return min(max(guess, below + margin), self.enough - margin)
 
 
 @dataclass(frozen=True)
 class Search:
     """The smallest number of people, up to `most`, with which a test has at least the power `target`.
 
-    Brackets by doubling, then halves. The limits of the number are those with which the upper and the lower limit of
-    power reach the target: numbers outside them, simulated, would have a power whose interval excludes the target.
+    The limits of the number are those with which the upper and the lower limit of power reach the target: numbers
+    outside them have a power whose interval excludes it.
     """
 
     simulation: Simulation
@@ -130,14 +149,13 @@ class Search:
         for size in asked:
             self.simulation.simulate(size, progress)
         for test, planned in enumerate(self.simulation.tests):
-            for bound in ("high", "share", "low") if not planned.hopeless else ():
-                while (people := self.bracket(test, bound).next(self.most)) is not None:
+            for bound in ("share", "high", "low") if not planned.hopeless else ():
+                while (people := self.bracket(test, bound).next(self.target, self.most)) is not None:
                     self.simulation.simulate(people, progress)
 
     def bracket(self, test: int, bound: str) -> Bracket:
         """By the sizes simulated so far. `bound`: "share", or the limit "low" or "high" of power that has to reach."""
-        powers = {people: self.simulation.power(test, people) for people in self.simulation.found}
-        enough = {people: getattr(power, bound) >= self.target for people, power in powers.items()}
-        reached = min((people for people, yes in enough.items() if yes), default=None)
-        below = [people for people, yes in enough.items() if not yes and (reached is None or people < reached)]
-        return Bracket(max(below, default=None), reached)
+        power = {size: getattr(self.simulation.power(test, size), bound) for size in self.simulation.found}
+        enough = min((size for size in power if power[size] >= self.target), default=None)
+        below = max((size for size in power if power[size] < self.target and size < (enough or inf)), default=None)
+        return Bracket(below, enough, power[below] if below else 0.0, power[enough] if enough else 1.0)

@@ -23,7 +23,7 @@ FILE = click.Path(path_type=Path)
 @click.option("--target", default=0.8, show_default=True, help="The power that the number of people is searched for.")
 @click.option("--completing", default=1.0, show_default=True, help="Share of those who start whose ratings count.")
 @click.option("--most", default=1000, show_default=True, type=click.IntRange(2), help="Where the search ends.")
-@click.option("--simulations", default=2000, show_default=True, type=click.IntRange(100), help="Studies of each size.")
+@click.option("--simulations", default=5000, show_default=True, type=click.IntRange(100), help="Studies of each size.")
 @click.option("--seed", default=2011, show_default=True, type=click.IntRange(0), help="Everything follows from it.")
 @click.option("-o", "--out", type=FILE, help="A CSV file for the table.")
 @AS_JSON

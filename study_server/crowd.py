@@ -15,6 +15,7 @@ from study_server.raters import Effects, expected
 from study_server.settings import Question
 
 Floats = npt.NDArray[np.float64]
+Answers = npt.NDArray[np.float32]
 
 
 @dataclass(frozen=True)
@@ -29,18 +30,18 @@ class Crowd:
     effects: Effects
     strangers: bool = False
 
-    def answers(self, question: str, people: int, studies: int, random: np.random.Generator) -> Floats:
-        """Whole numbers in 1 .. scale, shape (people, studies, pictures).
+    def answers(self, question: str, people: int, studies: int, random: np.random.Generator) -> Answers:
+        """Whole numbers in 1 .. scale, shape (people, studies, pictures). float32: drawing is most of a simulation.
 
         Random numbers are used person by person: with more people from an equal generator, the first ones are the same.
         """
         asked = self.question(question)
         pictures = len(self.study.stimuli)
         persons = pictures if self.strangers else 1
-        normal = random.standard_normal((people, studies, persons + pictures))
-        drawn = self.effects.noise_sd * normal[..., persons:]
-        drawn += self.effects.person_sd * normal[..., :persons]
-        drawn += self.centres(asked)
+        normal = random.standard_normal((people, studies, persons + pictures), dtype=np.float32)
+        drawn = np.float32(self.effects.noise_sd) * normal[..., persons:]
+        drawn += np.float32(self.effects.person_sd) * normal[..., :persons]
+        drawn += self.centres(asked).astype(np.float32)
         return np.clip(np.rint(drawn, out=drawn), 1, asked.scale, out=drawn)
 
     def means(self, question: str) -> dict[str, float]:

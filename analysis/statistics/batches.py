@@ -5,8 +5,10 @@ them it agrees with; tests/analysis/test_batches.py holds the p values equal to 
 """
 
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
+import numpy.typing as npt
 from scipy import special
 from scipy.linalg import helmert
 
@@ -26,9 +28,9 @@ class Moments:
     covariance: Floats
 
     @classmethod
-    def of(cls, answers: Floats) -> "Moments":
+    def of(cls, answers: npt.NDArray[np.floating[Any]]) -> "Moments":
         """From answers of shape (people, studies, samples)."""
-        mean = answers.mean(axis=0)
+        mean = answers.mean(axis=0, dtype=np.float64)
         centred = np.ascontiguousarray((answers - mean).transpose(1, 2, 0))
         return cls(len(answers), mean, centred @ centred.transpose(0, 2, 1) / (len(answers) - 1))
 
@@ -36,7 +38,7 @@ class Moments:
         """Of weighted sums of the samples. `weights`: (samples, sums)."""
         return Moments(self.people, self.mean @ weights, weights.T @ self.covariance @ weights)
 
-    def chosen(self, samples: "np.typing.NDArray[np.intp]") -> "Moments":
+    def chosen(self, samples: npt.NDArray[np.intp]) -> "Moments":
         """Of other samples in each study. `samples`: (studies, how many), their places."""
         studies = np.arange(len(samples))[:, None]
         covariance = self.covariance[studies[:, :, None], samples[:, :, None], samples[:, None, :]]

@@ -1,0 +1,188 @@
+"""Simulated studies are tested as the report tests them: every p value and every decision is compared."""
+
+import json
+from dataclasses import replace
+from itertools import product
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pandas as pd
+import pytest
+from thesis_study import QUESTIONS, stimulus, thesis_stimuli, write_manifest
+
+from analysis.evidence import BETWEEN, Evidence
+from analysis.families import adjusted
+from analysis.margins import equivalence_table, judge
+from analysis.plan import Mode
+from analysis.planned import deciding, planned_table
+from analysis.planned_tests import planned_tests
+from analysis.power import Simulation
+from analysis.results import analyse
+from analysis.rows import rows_of
+from analysis.sample import draw_sample
+from analysis.statistics.undefined import Floats
+from analysis.study import StudyInfo, read_manifest
+
+PEOPLE, STUDIES = 9, 2
+COMPARED = {"name": "others", "question": "translucent", "stimuli": ["img10", "best", "img12", "img11"]}
+CONTRASTS = [
+    {"name": "exponents", "question": "translucent", "weights": {"img02": -1.0, "img01": -0.5, "img03": 1.5}},
+    {"name": "lights", "question": "translucent", "weights": {"img05": 1.0, "img06": -1.0}},
+    {"name": "weights", "question": "realistic", "weights": {"img07": 1.0, "img08": -1.0}},
+]
+
+
+def one_at_a_time(folder: Path, **analysis: Any) -> StudyInfo:
+    """The thesis's study."""
+    return read_manifest(write_manifest(folder, thesis_stimuli(), analysis))
+
+
+def factorial(folder: Path, **analysis: Any) -> StudyInfo:
+    """Exponent by backlight, one combination of which is shown as two pictures."""
+    cells = [*product([25, 18], [1.2, 0.8, 1.6]), (25, 1.2)]
+    names = ("thickness exponent", "backlight")
+    entries = [
+        stimulus(number, role="factor", rows=list(names), factors=dict(zip(names, cell, strict=True)), label=f"{cell}")
+        for number, cell in enumerate(cells, 1)
+    ]
+    path = write_manifest(folder, entries, analysis)
+    data = json.loads(path.read_text())
+    data["study"]["design"] = {"kind": "full-factorial"}
+    data["study"]["factors"] = [
+        {"name": names[0], "path": "material.x", "levels": [25, 18]},
+        {"name": names[1], "path": "material.y", "levels": [1.2, 0.8, 1.6]},
+    ]
+    path.write_text(json.dumps(data))
+    return read_manifest(path)
+
+
+def answers(question: str, people: int, studies: int, random: np.random.Generator, pictures: int) -> Floats:
+    """Small whole numbers, so that pictures tie for the best; one picture stands out."""
+    shift = 2.0 * (np.arange(pictures) == len(question) % pictures)
+    person = random.normal(0, 1, (people, studies, 1))
+    return np.clip(np.rint(4 + shift + person + random.normal(0, 1, (people, studies, pictures))), 1, 7)
+
+
+def simulation_of(study: StudyInfo, mode: Mode) -> tuple[Simulation, list[str]]:
+    means = {name: {picture.id: 4.0 for picture in study.pictures} for name in QUESTIONS}
+    tests, notes = planned_tests(study, study.plan, mode, means)
+    pictures = len(study.pictures)
+    return Simulation(tests, lambda *given: answers(*given, pictures), pictures, STUDIES, 5), notes
+
+
+def reported(study: StudyInfo, mode: Mode) -> Evidence:
+    """The report's evidence on the last of the studies simulated, in its own mode alone."""
+    names = [picture.id for picture in study.pictures]
+    rows = []
+    for number, question in enumerate(QUESTIONS):
+        drawn = answers(question, PEOPLE, STUDIES, np.random.default_rng([5, number, 0]), len(names))[:, -1]
+        rows += [
+            (f"{name if mode == 'independent' else ''}P{person}", name, question, drawn[person, place])
+            for person in range(PEOPLE)
+            for place, name in enumerate(names)
+        ]
+    ratings = pd.DataFrame(rows, columns=["participant", "stimulus", "question", "rating"])
+    sample = draw_sample(ratings, study.plan)
+    found = [
+        analyse(row, sample, study.plan, mode)
+        for row in rows_of(study, study.plan, sample.ratings)[0]
+        if mode == "repeated" or row.kind != "interaction"
+    ]
+    return Evidence(study, study.plan, sample, ratings, adjusted(found, study.plan), ())
+
+
+def check(study: StudyInfo, evidence: Evidence) -> list[str]:
+    """Every p value and decision as the report's; returns the titles of the tests, in their order."""
+    simulation, _ = simulation_of(study, evidence.sample.mode)
+    p = simulation.p_values(PEOPLE, 0, STUDIES)
+    expected, yes = report_says(evidence)
+    assert [test.kind for test in simulation.tests] == [kind for kind, _ in expected]
+    assert p[-1] == pytest.approx([value for _, value in expected], rel=1e-9)
+    assert list(simulation.decided(p)[-1]) == yes
+    return [test.title for test in simulation.tests]
+
+
+def report_says(evidence: Evidence) -> tuple[list[tuple[str, float]], list[bool]]:
+    """(kind, p) of every test of the report, and whether it decides for an effect (or for equivalence)."""
+    plan = evidence.plan
+    tests = [("difference", float(each.p or "nan")) for each in evidence.main]
+    yes = [(each.deciding_p(plan) or 1.0) < plan.alpha for each in evidence.main]
+    if evidence.sample.mode == "repeated":
+        contrasts, _ = planned_table(evidence.sample, plan)
+        tests += [("contrast", float(row["p"])) for _, row in contrasts.iterrows()]
+        yes += [deciding(row, plan) < plan.alpha for _, row in contrasts.iterrows()]
+    if plan.equivalence is not None:
+        pairs = equivalence_table(judge(evidence.main, plan.equivalence)[0])
+        tests += [("equivalence", float(value)) for value in pairs["p_equivalence"]]
+        yes += [value in ("equivalent", "both") for value in pairs["verdict"]]
+    return tests, yes
+
+
+def test_a_comparison_with_the_best_contrasts_and_equivalence(tmp_path: Path) -> None:
+    study = one_at_a_time(
+        tmp_path,
+        alpha=0.2,
+        comparison=[COMPARED],
+        contrast=CONTRASTS,
+        equivalence={"margin": {"translucent": 1.5}, "alpha": 0.1},
+    )
+    titles = check(study, reported(study, "repeated"))
+    assert len(titles) == 9 + 1 + 3 + 3 * 3 + 6
+    assert titles[9:11] == ["Others", "translucent: exponents"]
+    assert titles[13] == "Translucent vs thickness exponent: 25 like 18"
+
+
+def test_families_and_adjustments(tmp_path: Path) -> None:
+    study = one_at_a_time(tmp_path, alpha=0.4, contrast=CONTRASTS)
+    evidence = reported(study, "repeated")
+    decisions = set()
+    for family, adjust in (("all", "none"), ("all", "holm"), ("question", "fdr"), ("factor", "holm")):
+        plan = study.plan.model_copy(update={"family": family, "adjust": adjust})
+        declared = replace(evidence, plan=plan, main=adjusted(evidence.main, plan))
+        check(replace(study, plan=plan), declared)
+        decisions.add(tuple(report_says(declared)[1]))
+    assert len(decisions) == 4  # so that a wrong family or method would have been seen
+
+
+def test_independent_samples(tmp_path: Path) -> None:
+    study = one_at_a_time(tmp_path, alpha=0.2, mode="independent", comparison=[COMPARED], equivalence={"margin": 1.5})
+    assert len(check(study, reported(study, "independent"))) == 9 + 1 + 3 * 3 * 3 + 6
+
+
+def test_a_factorial_with_its_interaction(tmp_path: Path) -> None:
+    study = factorial(tmp_path, alpha=0.3)
+    titles = check(study, reported(study, "repeated"))
+    assert len(titles) == 9
+    assert titles[6] == "Translucent vs thickness exponent × backlight"
+
+
+def test_a_factorial_between_people_has_no_interactions(tmp_path: Path) -> None:
+    study = factorial(tmp_path, mode="independent")
+    assert len(check(study, reported(study, "independent"))) == 6
+    assert simulation_of(study, "independent")[1] == [BETWEEN]
+
+
+def test_expected_differences(tmp_path: Path) -> None:
+    """Of main effects between means over equally weighted combinations, of interactions what no sum explains."""
+    study = factorial(tmp_path, equivalence={"margin": 1.0})
+    means = dict.fromkeys((picture.id for picture in study.pictures), 4.0)
+    tests, _ = planned_tests(study, study.plan, "repeated", dict.fromkeys(QUESTIONS, means | {"img04": 4.6}))
+    found = {test.title: test.difference for test in tests if test.question == "translucent"}
+    assert found["Translucent vs thickness exponent"] == pytest.approx(0.2)
+    assert found["Translucent vs backlight"] == pytest.approx(0.3)
+    assert found["Translucent vs thickness exponent × backlight"] == pytest.approx(0.6 * 0.5 * 2 / 3)
+    assert found["Translucent vs backlight: 1.2 like 0.8"] == pytest.approx(0.3)
+    assert found["Translucent vs backlight: 0.8 like 1.6"] == pytest.approx(0.0)
+
+
+def test_what_chance_picks_has_no_expected_difference(tmp_path: Path) -> None:
+    study = one_at_a_time(tmp_path, comparison=[COMPARED], contrast=CONTRASTS, equivalence={"margin": 0.5})
+    means = dict.fromkeys((picture.id for picture in study.pictures), 4.0) | {"img05": 5.0}
+    tests, _ = planned_tests(study, study.plan, "repeated", dict.fromkeys(QUESTIONS, means))
+    found = {test.title: test.difference for test in tests}
+    assert found["Others"] is None
+    assert found["Others: offline 1 like best own, backlight 0.8"] is None
+    assert found["Others: offline 1 like offline 2"] == 0
+    assert found["translucent: lights"] == 1
+    assert [test.hopeless for test in tests if test.title == "Others"] == [""]
