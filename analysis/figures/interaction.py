@@ -65,7 +65,7 @@ def interaction_figure(study: StudyInfo, whole: Sequence[Analysed], confidence: 
     with mpl.rc_context(STYLE):
         width = max(3.1, 0.62 * len(layout.axis.levels) + 1.2)
         figure = Figure(
-            figsize=(width * len(whole) + 1.1, 3.3 * len(combinations) + 0.3),
+            figsize=(width * len(whole) + 1.1, (2.7 + room(whole[0], layout, study) / 72) * len(combinations) + 0.3),
             layout=ConstrainedLayoutEngine(h_pad=0.12, w_pad=0.06),
         )
         grid = figure.subplots(len(combinations), len(whole), sharey="col", squeeze=False)
@@ -96,7 +96,7 @@ def draw_lines(axes: Axes, each: Analysed, layout: Layout, values: tuple[Any, ..
     assert each.means is not None
     means = each.means.set_index("level")
     places, count = np.arange(len(layout.axis.levels)), len(layout.lines.levels)
-    shown = len(places) <= PICTURED[0] and count <= PICTURED[1]
+    below = room(each, layout, study)
     for line, level in enumerate(layout.lines.levels):
         cells = [layout.cell(each, axis=value, lines=level, panels=values) for value in layout.axis.levels]
         own = means.loc[[cell.code for cell in cells]]
@@ -106,11 +106,11 @@ def draw_lines(axes: Axes, each: Analysed, layout: Layout, values: tuple[Any, ..
             color=colour, marker=marker, markersize=6, linestyle=DASHES[line % len(DASHES)], linewidth=1.4,
             elinewidth=1.4, capsize=3, label=level_text(level), zorder=3,
         )  # fmt: skip
-        for place, cell in zip(places, cells, strict=True) if shown else ():
+        for place, cell in zip(places, cells, strict=True) if below else ():
             under(axes, float(place), line, cell, study, colour)
     axes.set_xlim(-0.5, len(places) - 0.5)
     axes.set_xticks(places, [level_text(value) for value in layout.axis.levels])
-    axes.tick_params(axis="x", length=0, pad=4 + (count * (SIDE + 3) if any_pictured(each, study) and shown else 0))
+    axes.tick_params(axis="x", length=0, pad=4 + below)
 
 
 def file_of(cell: Level, study: StudyInfo) -> Any:
@@ -119,9 +119,11 @@ def file_of(cell: Level, study: StudyInfo) -> Any:
     return file if file is not None and file.is_file() else None
 
 
-def any_pictured(each: Analysed, study: StudyInfo) -> bool:
-    """Whether thumbnails take room under the axis."""
-    return any(file_of(cell, study) is not None for cell in each.row.levels)
+def room(each: Analysed, layout: Layout, study: StudyInfo) -> int:
+    """Points under the axis for the cells' thumbnails; 0 where they are too many, or there are none."""
+    few = len(layout.axis.levels) <= PICTURED[0] and len(layout.lines.levels) <= PICTURED[1]
+    pictured = few and any(file_of(cell, study) is not None for cell in each.row.levels)
+    return len(layout.lines.levels) * (SIDE + 3) if pictured else 0
 
 
 def under(axes: Axes, place: float, line: int, cell: Level, study: StudyInfo, colour: str) -> None:
