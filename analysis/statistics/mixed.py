@@ -56,8 +56,11 @@ class MixedModel:
     def fit(self, frame: pd.DataFrame) -> MixedFit:
         """Tests and variances."""
         asked = [name for name in (self.participant, self.picture) if name]
-        require_columns(frame, self.value, *self.factors, *asked)
-        present = frame[[self.value, *self.factors, *asked]].dropna()
+        used = list(
+            dict.fromkeys([self.value, *self.factors, *asked])
+        )  # pictures may be the factor and the random term
+        require_columns(frame, *used)
+        present = frame[used].dropna()
         coding = coding_of(present, self.value, self.factors, self.interactions)
         cells = present[list(self.factors)].drop_duplicates()
         refuse_empty_cells(coding, cells, self.value)
