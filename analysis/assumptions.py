@@ -126,6 +126,7 @@ def cautions(table: pd.DataFrame, found: Sequence[Analysed], plan: AnalysisPlan)
                 f"{each.row.title}: {apa_p(plain)} without and {apa_p(corrected)} with the Greenhouse–Geisser "
                 "correction; the corrected one counts."
             )
+    said += [sentence for each in found if (sentence := without_spread(each))]
     for entry in table.to_dict("records") if "levene_p" in table else ():
         if entry["levene_p"] < plan.alpha and not entry["variance_ratio"] <= UNEVEN:
             said.append(
@@ -133,6 +134,17 @@ def cautions(table: pd.DataFrame, found: Sequence[Analysed], plan: AnalysisPlan)
                 f"test, {apa_p(entry['levene_p'])}); with unequal sizes, do not trust p of the analysis of variance."
             )
     return said
+
+
+def without_spread(each: Analysed) -> str:
+    """The pairs that everyone rates equally far apart: no t test, no p."""
+    if each.contrasts is None or not each.contrasts["p"].isna().any():
+        return ""
+    labels = {level.code: level.label for level in each.row.levels}
+    pairs = each.contrasts[each.contrasts["p"].isna()]
+    named = [f"{labels[pair['a']]} and {labels[pair['b']]}" for pair in pairs.to_dict("records")]
+    which = "; ".join(named) if len(named) <= MOST_NAMED else counted(len(named), "pair")
+    return f"{each.row.title}: everyone rates {which} exactly the same distance apart, so there is no paired t test."
 
 
 def table_of_assumptions(table: pd.DataFrame, mode: Mode) -> Table:

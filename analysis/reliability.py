@@ -2,6 +2,7 @@
 
 from collections.abc import Callable
 from itertools import combinations
+from typing import Any
 
 import numpy as np
 import pandas as pd
@@ -12,7 +13,7 @@ from analysis.statistics.agreement import IntraclassCorrelation, KrippendorffAlp
 from analysis.statistics.undefined import Undefined
 from analysis.study import StudyInfo
 
-Entry = dict[str, object]
+Entry = dict[str, Any]
 
 
 def rater_table(sample: Sample, study: StudyInfo) -> tuple[pd.DataFrame, list[str]]:
@@ -20,7 +21,7 @@ def rater_table(sample: Sample, study: StudyInfo) -> tuple[pd.DataFrame, list[st
 
     Columns: `icc_a1, icc_a1_low, icc_a1_high` (absolute agreement of one rater), `icc_ak...` (of all), `n_raters`,
     `n_targets`, `icc_dropped` (people left out of the ICC for a missing answer); `alpha, alpha_low, alpha_high`
-    (Krippendorff, ordinal), `alpha_n_raters`; `n_missing` (empty cells of people by pictures).
+    (Krippendorff, ordinal), `alpha_n_raters`; `n_missing` (empty cells of people by pictures); `reason` for a NaN.
     """
     entries: list[Entry] = []
     notes: list[str] = []
@@ -34,12 +35,19 @@ def rater_table(sample: Sample, study: StudyInfo) -> tuple[pd.DataFrame, list[st
         if icc or alpha:
             missing = mine["participant"].nunique() * mine["stimulus"].nunique() - len(mine)
             nothing = dict.fromkeys((*ICC_COLUMNS, *ALPHA_COLUMNS), np.nan) | {"n_raters": 0, "icc_dropped": 0}
-            entries.append({"question": question.name, **nothing, **icc, **alpha, "n_missing": missing})
+            entry = {"question": question.name, **nothing, **icc, **alpha, "n_missing": missing}
+            entries.append({**entry, "reason": "; ".join(dict.fromkeys([*said, *again, *no_interval(entry)]))})
     return pd.DataFrame(entries), notes
 
 
 ICC_COLUMNS = ("icc_a1", "icc_a1_low", "icc_a1_high", "icc_ak", "icc_ak_low", "icc_ak_high")
 ALPHA_COLUMNS = ("alpha", "alpha_low", "alpha_high")
+
+
+def no_interval(entry: Entry) -> list[str]:
+    """Why an ICC stands without its interval."""
+    alone: bool = pd.notna(entry["icc_a1"]) and pd.isna(entry["icc_a1_low"])
+    return ["raters agree without any residual, so the ICC has no interval"] if alone else []
 
 
 def valued(make: Callable[[pd.DataFrame], Entry], frame: pd.DataFrame, what: str) -> tuple[Entry, list[str]]:

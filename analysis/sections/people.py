@@ -41,8 +41,15 @@ def people(evidence: Evidence) -> Section:
         quality=said,
         odd=table_of_those(quality, bound),
     )
-    tables = {"cells": cells, "participants": quality, "excluded": left_out}
+    tables = {"cells": cells, "participants": told(quality), "excluded": left_out}
     return Section("people", "People", body, tables, summary=(said,), warnings=tuple(look_alikes(evidence.ratings)))
+
+
+def told(quality: pd.DataFrame) -> pd.DataFrame:
+    """The table without the measures that the file does not tell; `reason`: why a correlation is missing."""
+    why = "no correlation: fewer than 3 ratings that others gave too, or all equal within their question"
+    missing = quality["person_rest_r"].isna()
+    return quality.dropna(axis=1, how="all").assign(reason=[why if none else "" for none in missing])
 
 
 def why_mode(sample: Sample) -> str:
@@ -77,11 +84,11 @@ def declared_rules(plan: AnalysisPlan) -> dict[str, str]:
 def look_alikes(ratings: pd.DataFrame) -> list[str]:
     """Labels that differ in case or spaces alone: most often one label written in two ways."""
     said = []
-    for column in ("participant", "stimulus", "question"):
+    for column, several in (("participant", "Participants"), ("stimulus", "Pictures"), ("question", "Questions")):
         alike: dict[str, list[str]] = {}
         for label in ratings[column].unique():
             alike.setdefault("".join(str(label).casefold().split()), []).append(str(label))
         for labels in (sorted(names, key=natural_key) for names in alike.values() if len(names) > 1):
             quoted = joined([f'"{label}"' for label in labels])
-            said.append(f"{column.capitalize()}s {quoted} differ in case or spaces alone and count as {len(labels)}.")
+            said.append(f"{several} {quoted} differ in case or spaces alone and count as {len(labels)}.")
     return said
