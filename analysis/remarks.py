@@ -111,24 +111,3 @@ def design_remarks(study: StudyInfo, sample: Sample, ratings: pd.DataFrame) -> l
     if sample.n_missing:
         said.append(f"{counted(sample.n_missing, 'answer')} missing.")
     return said
-
-
-def agreement_of_tests(found: Sequence[Analysed], alpha: float) -> str:
-    """One sentence: do ranks say the same as means?"""
-    found = [each for each in found if each.row.kind != "interaction"]
-    both = [each for each in found if each.p is not None and each.rank_p is not None]
-    if not both:
-        return ""
-    apart = [each.row.title for each in both if decides_apart(each, alpha)]
-    tests = f"Means (ANOVA) and ranks (Friedman, of two samples Wilcoxon), at the {alpha:.0%} level,"
-    if apart:
-        return f"{tests} disagree about {joined(apart)}."
-    if len(both) < len(found):
-        return f"{tests} agree in the {counted(len(both), 'row')} that {'has' if len(both) == 1 else 'have'} both."
-    return f"{tests} agree in {'the only row' if len(both) == 1 else f'all {len(both)} rows'}."
-
-
-def decides_apart(each: Analysed, alpha: float) -> bool:
-    """Whether one of the two tests is significant and the other is not."""
-    assert each.p is not None and each.rank_p is not None
-    return (each.p < alpha) is not (each.rank_p < alpha)

@@ -57,7 +57,7 @@ def agreement_of_tests(models: Sequence[Modelled], alpha: float) -> str:
     ]
     head = f"At the {alpha:.0%} level {names}"
     if not apart:
-        rows = "the only row" if len(compared) == 1 else f"all {len(compared)} rows"
+        rows = {1: "the only row", 2: "both rows"}.get(len(compared), f"all {len(compared)} rows")
         return f"{head} agree in {rows}{lacking(compared)}."
     if len(apart) == len(compared):
         rows = "the only row" if len(apart) == 1 else "every row"

@@ -4,20 +4,18 @@ from analysis.evidence import Evidence
 from analysis.pair_tables import table_of_contrasts, table_of_pairs, table_of_planned
 from analysis.planned import planned_sentences, planned_summary, planned_table
 from analysis.records import contrasts_table, tests_table
-from analysis.remarks import agreement_of_tests
 from analysis.section import Section, rendered
 from analysis.tables import table_of_tests, tables_of_ranks
 
 
 def tests(evidence: Evidence) -> Section:
-    """Corrected tests with effect sizes, tests of ranks, whether they agree, every pair, planned contrasts."""
+    """Corrected tests with effect sizes, tests of ranks, every pair, planned contrasts."""
     plan, main = evidence.plan, evidence.main
     planned, notes = planned_table(evidence.sample, plan)
     body = rendered(
         "tests",
         tests=table_of_tests(main, plan),
         ranks=tables_of_ranks(main),
-        agreement=agreement_of_tests(main, plan.alpha),
         pairs=table_of_pairs(main, plan.confidence),
         contrasts=table_of_contrasts(main, plan),
         planned=table_of_planned(planned, plan),

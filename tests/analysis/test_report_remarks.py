@@ -82,7 +82,7 @@ def test_agreement_counts_only_rows_that_have_both(csv_of: Write, tmp_path: Path
     frame = pd.read_csv(csv_of(answers()))
     frame.loc[frame["question"] != "translucent", "rating"] = 4
     write_report(csv_of(frame.to_csv(index=False)), tmp_path / "out", manifest=small_study(tmp_path))
-    assert re.search(r"agree in the 2 rows that have both", page_text(tmp_path / "out"))
+    assert re.search(r"agree in both rows", page_text(tmp_path / "out"))
 
 
 def test_the_most_serious_warning_comes_first(csv_of: Write, tmp_path: Path) -> None:
