@@ -1,11 +1,15 @@
 """Draws the pictures of the documentation again: `python docs/images/draw.py`."""
 
+import subprocess
 import tempfile
 from pathlib import Path
 from typing import Any
 
 from PIL import Image, ImageDraw, ImageFont
 
+from analysis.pdf import sandbox
+from fakesss.browser import find_browser
+from fakesss.cli_analysis import report_folder
 from fakesss.colour import to_8bit
 from fakesss.graph_drawing import draw_graph
 from fakesss.inspect import compiled, contact_sheet
@@ -14,6 +18,10 @@ from fakesss.scene import Scene
 from fakesss.shapes import names
 from stimuli.build import build
 from stimuli.template import write_template
+from study_server.app import admin_secret
+from study_server.manifest import load_study
+from study_server.serve import served
+from study_server.simulate import simulate
 
 HERE = Path(__file__).parent
 INK, PAPER = (40, 40, 40), (255, 255, 255)
@@ -92,12 +100,43 @@ def lights(edge: int = 260) -> Image.Image:
     return sheet([(name, Image.fromarray(to_8bit(image[..., :3]))) for name, image in drawn], 4)
 
 
+def report() -> Image.Image:
+    """The first screen of the report on 38 simulated raters of the thesis's study, and two of its figures beside it."""
+    with tempfile.TemporaryDirectory() as name:
+        study = Path(name) / "study"
+        write_template(study, "thesis")
+        build(study)
+        with served(study, mode="simulated") as url:
+            simulate(url, load_study(study), admin_secret(study), started=44, completed=38, seed=2011, progress=False)
+        folder = report_folder(study, None, "simulated")
+        left = screenshot(folder / "index.html", (1180, 1300))
+        sheet = Image.new("RGB", (left.width + 1000, left.height), PAPER)
+        sheet.paste(left, (0, 0))
+        top = 20
+        for stem in ("figure-answers", "figure-people"):
+            figure = Image.open(folder / "figures" / f"{stem}.png").convert("RGB")
+            figure = figure.resize((960, 960 * figure.height // figure.width), Image.Resampling.LANCZOS)
+            sheet.paste(figure, (left.width + 20, top))
+            top += figure.height + 40
+        return sheet.resize((sheet.width * 3 // 4, sheet.height * 3 // 4), Image.Resampling.LANCZOS).quantize(256)
+
+
+def screenshot(page: Path, size: tuple[int, int]) -> Image.Image:
+    """The top of the page in a window of `size` CSS pixels."""
+    shot = page.with_name("screenshot.png")
+    switches = ["--headless", "--disable-gpu", "--hide-scrollbars", f"--window-size={size[0]},{size[1]}"]
+    command = [find_browser(), *switches, *sandbox(), f"--screenshot={shot}", page.as_uri()]
+    subprocess.run(command, check=True, stderr=subprocess.DEVNULL, timeout=120)
+    return Image.open(shot).convert("RGB")
+
+
 if __name__ == "__main__":
     for name, page in (
         ("thesis-stimuli", thesis_stimuli()),
         ("objects", objects()),
         ("views", views()),
         ("lights", lights()),
+        ("report", report()),
     ):
         page.save(HERE / f"{name}.png", optimize=True)
     draw_graph(compiled(Scene().replace({"light.ambient": (0, 0, 0)})), HERE / "graph.svg")
