@@ -9,9 +9,11 @@ import pandas as pd
 from scipy import stats
 from statsmodels.stats.multitest import multipletests
 
+from analysis.statistics.effect_size import d_z_interval
 from analysis.statistics.undefined import SMALLEST_P, Floats, complete_table
 
 AT_ONCE = 512
+D_Z = ("d_z", "d_z_low", "d_z_high")
 Indices = npt.NDArray[np.intp]
 
 
@@ -22,9 +24,9 @@ class PairedContrasts:
     `pairs`: "all" of them, each level with the first ("reference"; the other is subtracted from the first), or
     "neighbours", a chain in the order of the levels; only pairs that are tested are counted in the adjustment.
     Returns a row per pair: `a, b, difference` (mean of a less mean of b), `ci_low, ci_high` (unadjusted), `t, df, p,
-    p_holm, d_z` (mean difference over the standard deviation of differences), `n`. A pair whose differences are all
-    equal has NaN for `t, p, p_holm, d_z` and is not counted in the adjustment. Agrees with R `pairwise.t.test(paired =
-    TRUE, p.adjust.method = "holm")`.
+    p_holm, d_z` (mean difference over the standard deviation of differences), `d_z_low, d_z_high` (its interval), `n`.
+    A pair whose differences are all equal has NaN for `t, p, p_holm, d_z` and its limits, and is not counted in the
+    adjustment. Agrees with R `pairwise.t.test(paired = TRUE, p.adjust.method = "holm")`.
     """
 
     value: str
@@ -43,7 +45,7 @@ class PairedContrasts:
         tested = table["p"].notna()
         if tested.any():
             table.loc[tested, "p_holm"] = multipletests(table.loc[tested, "p"], method="holm")[1]
-        return table[["a", "b", "difference", "ci_low", "ci_high", "t", "df", "p", "p_holm", "d_z", "n"]]
+        return table[["a", "b", "difference", "ci_low", "ci_high", "t", "df", "p", "p_holm", *D_Z, "n"]]
 
     def chosen(self, k: int) -> tuple[Indices, Indices]:
         """Places of the first and second level of each pair that is tested."""
@@ -71,7 +73,8 @@ class PairedContrasts:
         found = stats.ttest_1samp(varied, 0.0, axis=0)
         interval = found.confidence_interval(self.confidence)
         d_z = mean / varied.std(axis=0, ddof=1)
-        undefined = {"t": found.statistic, "p": np.maximum(found.pvalue, SMALLEST_P), "d_z": d_z}
+        undefined = {"t": found.statistic, "p": np.maximum(found.pvalue, SMALLEST_P)}
+        undefined |= dict(zip(D_Z, (d_z, *d_z_interval(d_z, n, self.confidence)), strict=True))
         limits = {"ci_low": interval.low, "ci_high": interval.high}
         return (
             {"difference": mean, "df": np.full(len(mean), n - 1), "n": np.full(len(mean), n)}

@@ -10,7 +10,7 @@ import pytest
 from scipy import stats
 
 from analysis import Friedman, MeanIntervals, PairedContrasts, SignedRanks
-from analysis.statistics.effect_size import eta_squared_interval
+from analysis.statistics.effect_size import d_z_interval, eta_squared_interval
 
 DATA = Path(__file__).parents[1] / "data" / "statistics"
 R = json.loads((DATA / "effectsize_tost_padjust_R.json").read_text())
@@ -115,3 +115,28 @@ def test_plain_intervals() -> None:
     part = ROUNDING[ROUNDING["condition"] == "Round Out"]["value"]
     low, high = stats.t.interval(0.95, 21, part.mean(), stats.sem(part))
     assert tuple(table.loc["Round Out", ["ci_low", "ci_high"]]) == pytest.approx((low, high))
+
+
+def test_interval_of_d_z() -> None:
+    """R effectsize::cohens_d(paired = TRUE) on 103 people, to the accuracy of its optimiser; signs mirrored."""
+    d_z, n = R["dz_carrots"]["dz"], R["cousineau_morey"]["n"]
+    low, high = d_z_interval(np.array([d_z, -d_z, np.nan]), n)
+    assert (low[0], high[0]) == pytest.approx(R["dz_carrots"]["ci"], abs=1e-7)
+    assert (low[1], high[1]) == pytest.approx((-high[0], -low[0])) and np.isnan(low[2])
+
+
+@pytest.mark.parametrize("n", [2, 5, 100])
+def test_interval_of_a_huge_d_z(n: int) -> None:
+    """The noncentral t at its limits; where the limit for large t takes over there is no step to see."""
+    d_z = np.array([0.3, 3.0, 999.9 / np.sqrt(n), 1000.1 / np.sqrt(n), 1e12])
+    low, high = d_z_interval(d_z, n)
+    for limit, tail in ((low, 0.975), (high, 0.025)):
+        assert stats.nct.cdf(d_z[:2] * np.sqrt(n), n - 1, limit[:2] * np.sqrt(n)) == pytest.approx(tail, abs=1e-6)
+        assert limit[3] / limit[2] == pytest.approx(1.0002, abs=4e-4) and np.isfinite(limit[4])
+
+
+def test_contrasts_carry_the_interval_of_d_z() -> None:
+    """As the function gives it for t over the root of n."""
+    table = PairedContrasts(**COLUMNS)(ROUNDING)
+    low, high = d_z_interval(table["d_z"].to_numpy(), 22)
+    assert table["d_z_low"].to_numpy() == pytest.approx(low) and table["d_z_high"].to_numpy() == pytest.approx(high)
