@@ -13,6 +13,7 @@ from pandas.errors import Pandas4Warning
 
 from analysis.statistics.undefined import Undefined, complete_table, require_columns
 
+FEWEST = 5  # ratings; pingouin stops below
 MOST = 10**8  # numbers that krippendorff holds at once (pictures x values x values): 0.8 GB
 
 
@@ -37,6 +38,10 @@ class IntraclassCorrelation:
             raise Undefined(f"{self.value} by {self.target}: all ratings are equal, so agreement has no value")
         if np.ptp(wide.to_numpy().sum(axis=0)) == 0:
             raise Undefined(f"{self.value}: every {self.target} has the same mean, so the ICC has no value")
+        if wide.size < FEWEST:
+            raise Undefined(
+                f"{self.value} by {self.target}: {wide.size} ratings in complete rows; the ICC needs at least {FEWEST}"
+            )
         plain = pd.DataFrame(wide.to_numpy()).rename_axis("rater").reset_index()
         long = plain.melt("rater", var_name="target", value_name="value")
         found = unrounded_icc(long)

@@ -88,6 +88,11 @@ CASES = (
         refused=True,
     ),
     Hard("one participant", ratings(people=1), "1 of 1 participants rated every level; at least two must have"),
+    Hard(
+        "two people, two pictures",
+        HEAD + "p1,a,shiny,1\np1,b,shiny,2\np2,a,shiny,3\np2,b,shiny,6\n",
+        "4 ratings in complete rows; the ICC needs at least 5",
+    ),
     Hard("one picture", ratings(pictures=("a",)), "1 level with ratings; a comparison needs at least two"),
     Hard(
         "fewer people than pictures",
