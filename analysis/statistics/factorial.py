@@ -121,7 +121,7 @@ def crossed_table(
     if missing is not None:
         at = cell_name(dict(zip(within, missing, strict=True)), within)
         raise Undefined(f"{where}: nobody rated {at}; interactions need every combination of levels")
-    everyone = list(dict.fromkeys(frame[subject]))
+    everyone = list(frame[subject].unique())
     wide = wide[cells].reindex(everyone)
     kept = wide.dropna()
     if len(kept) < 2:
