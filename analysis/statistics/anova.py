@@ -8,6 +8,7 @@ import pandas as pd
 import pingouin
 from pandas.errors import Pandas4Warning
 from scipy import stats
+from statsmodels.stats.anova import AnovaRM
 
 from analysis.statistics.effect_size import eta_squared_interval
 from analysis.statistics.undefined import Undefined, complete_table, groups_of, not_zero, residuals
@@ -94,6 +95,11 @@ def library_anova(wide: pd.DataFrame) -> pd.DataFrame:
     levels = [f"M{index}" for index in range(wide.shape[1])]
     plain = pd.DataFrame(wide.to_numpy(), columns=levels).rename_axis("subject").reset_index()
     frame = plain.melt("subject", levels, "level", "value")
+    if wide.shape == (2, 3):  # pingouin 0.7.0 goes on to Mauchly's test, whose constants are 1/0 just there
+        test = AnovaRM(frame, "value", "subject", ["level"]).fit().anova_table.iloc[0]
+        between = 2 * float(((wide.mean() - wide.to_numpy().mean()) ** 2).sum())
+        effect = {"SS": between, "DF": test["Num DF"], "F": test["F Value"], "p_unc": test["Pr > F"]}
+        return pd.DataFrame([effect, {"DF": test["Den DF"]}])
     with warnings.catch_warnings():
         # pingouin 0.7.0 calls DataFrame.dropna(inplace=True), which pandas 3.1 announces to remove
         warnings.filterwarnings("ignore", message="The inplace keyword in DataFrame.dropna", category=Pandas4Warning)

@@ -180,3 +180,10 @@ def test_no_sphericity_test_with_fewer_people_than_levels() -> None:
     """Libraries answer p = 1 there; it means nothing."""
     wide = pd.DataFrame(np.random.default_rng(1).integers(1, 8, (3, 4)).astype(float))
     assert np.isnan(sphericity(wide, 2.0, 3, 6)["mauchly_p"])
+
+
+def test_two_people_and_three_levels_have_an_f() -> None:
+    """The library divides by zero there, in the constants of Mauchly's test. By hand: F = (73 / 6) / (1 / 2)."""
+    row = REPEATED(long([[1, 2, 5], [2, 2, 7]])).iloc[0]
+    assert (row["F"], row["df1"], row["df2"], row["ss_effect"]) == pytest.approx((73 / 3, 2, 2, 73 / 3))
+    assert np.isnan(row["mauchly_p"])
