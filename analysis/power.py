@@ -21,6 +21,7 @@ FEWEST = 2
 CONFIDENCE = 0.95
 MEMORY = 4_000_000  # answers to a question and covariances held at once, at the most
 USUAL_MOST = 1000
+GRAIN = 0.01  # of the limits of a number of people
 
 
 @dataclass(frozen=True)
@@ -101,18 +102,22 @@ class Simulation:
 class Bracket:
     """What the sizes simulated so far say of the smallest with enough power: more than `below`, at most `enough`.
 
-    `at_below`, `at_enough`: the power, or a limit of it, with these.
+    `at_below`, `at_enough`: the power, or a limit of it, with these. `grain`: the bracket is closed when no wider than
+    this share of the size.
     """
 
     below: int | None
     enough: int | None
     at_below: float = 0.0
     at_enough: float = 1.0
+    grain: float = 0.0
 
     @property
     def closed(self) -> bool:
-        """Whether the smallest size is known: `enough`."""
-        return self.enough == FEWEST or (self.enough is not None and self.below == self.enough - 1)
+        """Whether the smallest size is known."""
+        if self.enough is None:
+            return False
+        return self.enough - (self.below or FEWEST - 1) <= max(1, self.grain * self.enough)
 
     def next(self, target: float, most: int) -> int | None:
         """The size to simulate next; None where nothing is left to learn up to `most`.
@@ -137,7 +142,7 @@ class Search:
     """The smallest number of people, up to `most`, with which a test has at least the power `target`.
 
     The limits of the number are those with which the upper and the lower limit of power reach the target: numbers
-    outside them have a power whose interval excludes it.
+    outside them have a power whose interval excludes it. They are found to a hundredth, rounded away from the number.
     """
 
     simulation: Simulation
@@ -146,16 +151,23 @@ class Search:
 
     def run(self, asked: Sequence[int] = (), progress: Progress | None = None) -> None:
         """Simulates the sizes asked for, and on until every test that has a chance has its number and both limits."""
-        for size in asked:
+        for people in asked:
+            self.simulation.simulate(people, progress)
+        while (size := self.next()) is not None:
             self.simulation.simulate(size, progress)
+
+    def next(self) -> int | None:
+        """A size that some test still needs; None where nothing is left to learn. Each size tells of all tests."""
         for test, planned in enumerate(self.simulation.tests):
             for bound in ("share", "high", "low") if not planned.hopeless else ():
-                while (people := self.bracket(test, bound).next(self.target, self.most)) is not None:
-                    self.simulation.simulate(people, progress)
+                if (size := self.bracket(test, bound).next(self.target, self.most)) is not None:
+                    return size
+        return None
 
     def bracket(self, test: int, bound: str) -> Bracket:
         """By the sizes simulated so far. `bound`: "share", or the limit "low" or "high" of power that has to reach."""
         power = {size: getattr(self.simulation.power(test, size), bound) for size in self.simulation.found}
         enough = min((size for size in power if power[size] >= self.target), default=None)
         below = max((size for size in power if power[size] < self.target and size < (enough or inf)), default=None)
-        return Bracket(below, enough, power[below] if below else 0.0, power[enough] if enough else 1.0)
+        at_below, at_enough = power[below] if below else 0.0, power[enough] if enough else 1.0
+        return Bracket(below, enough, at_below, at_enough, grain=0.0 if bound == "share" else GRAIN)

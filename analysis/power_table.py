@@ -7,7 +7,7 @@ from typing import Any
 
 import pandas as pd
 
-from analysis.power import Power, Search
+from analysis.power import FEWEST, Power, Search
 from analysis.wording import counted, no_zero
 
 DESCRIBED = ("title", "question", "name", "kind", "alpha", "difference", "margin")
@@ -43,9 +43,11 @@ def found_row(search: Search, place: int, asked: Sequence[int], completing: floa
 
 
 def smallest(search: Search, place: int, bound: str) -> int | None:
-    """The number of people, where it is known."""
+    """The number of people, or a limit of it, where it is known."""
     found = search.bracket(place, bound)
-    return found.enough if found.closed and not search.simulation.tests[place].hopeless else None
+    if search.simulation.tests[place].hopeless or not found.closed:
+        return None
+    return (found.below or FEWEST - 1) + 1 if bound == "high" else found.enough
 
 
 def why_none(search: Search, place: int) -> str:

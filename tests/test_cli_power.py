@@ -71,7 +71,7 @@ def test_the_document_the_table_and_the_file(study: Path, capsys: pytest.Capture
     assert document["analysis"] == {"mode": "repeated", "alpha": 0.1, "adjust": "holm", "family": "all"}
     assert document["stopped"] is False
     assert err == ""
-    rows = list(csv.DictReader(table.open(encoding="utf-8")))
+    rows = list(csv.DictReader(table.read_text(encoding="utf-8").splitlines()))
     assert [row["title"] for row in rows] == [test["title"] for test in document["tests"]]
     assert rows[2]["people"] == str(found["people"])
     code, text, _ = power(study, *options, capsys=capsys)

@@ -187,6 +187,21 @@ def test_a_bracket_doubles_then_closes() -> None:
     assert Bracket(None, None).next(0.8, 3) == 3
     assert Bracket(None, 8, 0.0, 0.9).next(0.8, 1000) in range(2, 8)
     assert Bracket(None, 2).closed and Bracket(16, 17).closed and not Bracket(15, 17).closed
+    assert Bracket(795, 800, grain=0.01).closed and not Bracket(785, 800, grain=0.01).closed
     for at in (0.0, 0.5, 0.79):
         assert 8 < (Bracket(8, 16, at, 0.999).next(0.8, 1000) or 0) < 16
         assert Bracket(8, 10, at, 0.8).next(0.8, 1000) == 9
+
+
+def test_no_test_is_left_open_by_sizes_simulated_for_another() -> None:
+    """Two like tests: sizes that the second needs may show the first a smaller number, which then is followed up."""
+    draw = normal([0, 0.25, 0.26])
+    pairs = [(0, 1), (0, 2), (1, 2)]
+    tests = [
+        planned(lambda moments, pair=pair: repeated_p(moments.combined(np.eye(3)[:, list(pair)])), 0.25)  # type: ignore[misc]
+        for pair in pairs[:2]
+    ]
+    search = Search(Simulation(tests, draw, 3, 300, 3), 0.8, 1000)
+    search.run()
+    for row in found_rows(search, (), 1.0):
+        assert row["people_low"] <= row["people"] <= row["people_high"]
