@@ -8,7 +8,10 @@ from typing import Any
 
 STATISTICS = {
     "Adjusted": "analysis.statistics.multiplicity",
+    "CueRegression": "analysis.statistics.cues",
+    "CueSlopes": "analysis.statistics.cues",
     "Equivalence": "analysis.statistics.equivalence",
+    "ExplainedMeans": "analysis.statistics.cues",
     "FactorialAnova": "analysis.statistics.factorial",
     "Friedman": "analysis.statistics.friedman",
     "IntraclassCorrelation": "analysis.statistics.agreement",

@@ -10,6 +10,7 @@ from analysis.script import SCRIPT, script_source
 from analysis.section import TEMPLATES, Section
 from analysis.sections.agreement import agreement
 from analysis.sections.assumptions import assumptions
+from analysis.sections.cues import cues
 from analysis.sections.equivalence import equivalence
 from analysis.sections.interactions import interactions
 from analysis.sections.models import models
@@ -29,6 +30,7 @@ SECTIONS: tuple[Callable[[Evidence], Section | None], ...] = (
     interactions,
     models,
     equivalence,
+    cues,
     thesis,
     agreement,
     assumptions,

@@ -17,7 +17,7 @@ from fakesss.cli import commands
 from fakesss.pipeline import build
 from fakesss.scene import Scene, scene_paths
 from fakesss.shapes import names
-from stimuli.study import Compare, Design, Factor, Study
+from stimuli.study import Compare, Control, Design, Factor, Study
 from study_server.columns import RATINGS
 
 ROOT = Path(__file__).parent.parent
@@ -29,7 +29,8 @@ def page(name: str) -> str:
 
 DOCUMENTED = [
     ("scene", list(scene_paths())),
-    ("study", [*Study.model_fields, *Factor.model_fields, *Design.model_fields, *Compare.model_fields]),
+    ("study", [*Study.model_fields, *Factor.model_fields, *Design.model_fields]),
+    ("study", [*Compare.model_fields, *Control.model_fields]),
     ("survey", list(RATINGS)),
     ("statistics", [*AnalysisPlan.model_fields, *Comparison.model_fields, *Exclusions.model_fields]),
     ("statistics", [*EquivalencePlan.model_fields, *PlannedContrast.model_fields]),

@@ -239,6 +239,12 @@ def test_a_picture_made_elsewhere_has_cues_of_all_of_it_and_no_thickness() -> No
     assert found.values["mean_thickness"] is None and found.missing["mean_thickness"] == MADE_ELSEWHERE
 
 
+def test_every_cue_is_documented() -> None:
+    page = (Path(__file__).parents[2] / "docs" / "cues.md").read_text(encoding="utf-8")
+    names = cues_of_picture(np.zeros((1, 1, 3), np.uint8)).values
+    assert [name for name in (*names, "cues", "cues_missing") if f"`{name}`" not in page] == []
+
+
 SPHERE = {"object": "sphere", "size": (64, 64), "supersampling": 2, "camera.distance": 200.0, "occlusion.rays": 16}
 
 

@@ -1,0 +1,177 @@
+"""The section on cues: what it leaves out and why, twins counted once, sentences a reader gets."""
+
+from dataclasses import replace
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pandas as pd
+import pytest
+from thesis_study import stimulus, thesis_stimuli, write_manifest
+
+from analysis.cue_findings import CueFindings, factor_columns, find_cues, fitted_together
+from analysis.evidence import Evidence
+from analysis.sample import draw_sample
+from analysis.section import Section
+from analysis.sections.cues import cues
+from analysis.study import Factor, read_manifest
+
+QUESTION = "translucent"
+
+
+def cue_values(number: int) -> dict[str, float | None]:
+    """Contrast rises from picture to picture, skew is twice as much, thickness the same everywhere."""
+    rng = np.random.default_rng(number)
+    values = {"rms_contrast": 0.1 * number, "luminance_skew": 0.2 * number, "mean_thickness": 0.3}
+    return {**values, "gradient_energy": float(rng.uniform()), "highlight_share": float(rng.uniform())}
+
+
+def sweep(pictures: int) -> list[dict[str, Any]]:
+    """Pictures of one factor, with cues."""
+    return [
+        stimulus(
+            k, role="factor", rows=["backlight"], factors={"backlight": k / 10}, label=f"b {k}", cues=cue_values(k)
+        )
+        for k in range(1, pictures + 1)
+    ]
+
+
+def evidence_of(folder: Path, stimuli: list[dict[str, Any]], slope: float = 0.5, people: int = 8) -> Evidence:
+    """People who rate higher what has more contrast."""
+    study = read_manifest(write_manifest(folder, stimuli, {}))
+    rng = np.random.default_rng(5)
+    rows = [
+        {"participant": f"p{who}", "stimulus": p.id, "question": QUESTION}
+        | {"rating": float(np.clip(round(2 + slope * place + rng.normal()), 1, 7))}
+        for who in range(people)
+        for place, p in enumerate(study.pictures)
+    ]
+    ratings = pd.DataFrame(rows)
+    return Evidence(study, study.plan, draw_sample(ratings, study.plan), ratings, (), ())
+
+
+def found(evidence: Evidence) -> CueFindings:
+    findings = find_cues(evidence, QUESTION)
+    assert findings is not None
+    return findings
+
+
+def section(evidence: Evidence) -> Section:
+    made = cues(evidence)
+    assert made is not None
+    return made
+
+
+def test_a_sweep_of_twelve_pictures(tmp_path: Path) -> None:
+    made = section(evidence_of(tmp_path / "s", sweep(12)))
+    assert len(made.drawings) == 1 and made.drawings[0].caption.startswith(
+        "Translucent: mean rating of every different"
+    )
+    assert {"cues", "cue_slopes", "cue_regression", "cue_explained"} == set(made.tables)
+    assert made.tables["cues"].shape == (12, 8)
+    (sentence,) = made.summary
+    assert sentence.startswith("Translucent goes along most with contrast: rated 1.")
+    assert sentence.endswith("p < .001 (Holm); an association, not a cause.")
+    (paste,) = made.sentences
+    assert "over 12 different pictures; the steepest mean slope was that on contrast, b = 1." in paste
+    body = str(made.body)
+    assert "Left out, as the same in all pictures: mean thickness." in body
+    assert "skew of luminance cannot be told from contrast (r = 1.000)" in body
+    assert list(made.tables["cue_regression"]["cue"]) == ["rms_contrast", "gradient_energy", "highlight_share"]
+    explained = made.tables["cue_explained"].set_index("explained_by")["r2"]
+    assert explained["the factors"] == pytest.approx(explained["contrast"])  # the factor rises with the contrast
+    assert explained["the cues at once"] >= explained["contrast"]
+
+
+def test_few_pictures_hold_one_cue_at_a_time(tmp_path: Path) -> None:
+    findings = found(evidence_of(tmp_path / "s", sweep(4)))
+    assert "4 different pictures cannot hold a regression on 3 cues at once: one cue at a time." in findings.said
+    assert findings.joint is None and findings.slopes is not None and len(findings.slopes) == 4
+
+
+def test_cues_that_others_determine_are_named() -> None:
+    rng = np.random.default_rng(2)
+    table = pd.DataFrame(rng.normal(size=(30, 2)), columns=["rms_contrast", "luminance_skew"])
+    table["gradient_energy"] = table["rms_contrast"] + table["luminance_skew"]
+    kept, said = fitted_together(table)
+    assert kept == ["rms_contrast", "luminance_skew"]
+    assert said == [
+        "On these pictures sharpness (gradient energy) follows from the cues before it (multiple R = 1.000); it is "
+        "left out where all are fitted at once."
+    ]
+
+
+def test_a_picture_shown_more_than_once_counts_once(tmp_path: Path) -> None:
+    """The thesis's images 1, 4 and 7: each person's three ratings are averaged."""
+    stimuli = thesis_stimuli()[:9]
+    for entry in stimuli:
+        first = entry["same_picture_as"] or entry["id"]
+        entry["cues"] = cue_values(int(first.removeprefix("img")))
+    findings = found(evidence_of(tmp_path / "s", stimuli))
+    assert set(findings.frame["picture"]) == {f"img0{n}" for n in (1, 2, 3, 5, 6, 8, 9)}
+    assert len(findings.frame) == 8 * 7
+    evidence = evidence_of(tmp_path / "t", stimuli)
+    ratings = evidence.ratings[evidence.ratings["participant"] == "p0"].set_index("stimulus")["rating"]
+    mine = findings.frame[(findings.frame["participant"] == "p0") & (findings.frame["picture"] == "img01")]
+    assert mine["rating"].item() == pytest.approx(ratings[["img01", "img04", "img07"]].mean())
+
+
+def test_pictures_made_elsewhere_are_listed_only_and_controls_are_in(tmp_path: Path) -> None:
+    other = stimulus(9, role="compare", label="other", cues={**cue_values(9), "mean_thickness": None})
+    control = stimulus(10, role="control", label="opaque", cues=cue_values(10))
+    made = section(evidence_of(tmp_path / "s", [*sweep(8), other, control]))
+    assert set(made.tables["cue_slopes"]["pictures"]) == {9}  # eight and the control
+    assert set(made.tables["cue_explained"]["pictures"]) == {8}  # those of the factor
+    assert len(made.tables["cues"]) == 10
+    assert "Pictures made elsewhere have cues of their whole area" in str(made.body)
+    assert "controls in a frame" in made.drawings[0].caption
+
+
+def test_a_cue_that_a_picture_lacks_is_left_out(tmp_path: Path) -> None:
+    stimuli = sweep(6)
+    stimuli[2]["cues"]["highlight_share"] = None
+    findings = found(evidence_of(tmp_path / "s", stimuli))
+    assert "Left out, as not every picture has it: share of highlights." in findings.said
+    assert "highlight_share" not in findings.used
+
+
+def test_ratings_that_no_cue_goes_along_with(tmp_path: Path) -> None:
+    (sentence,) = section(evidence_of(tmp_path / "s", sweep(12), slope=0.0)).summary
+    assert sentence == "Translucent: no image cue goes along with it beyond chance (Holm over 4 cues)."
+
+
+def test_equal_ratings_are_said_and_drawn(tmp_path: Path) -> None:
+    evidence = evidence_of(tmp_path / "s", sweep(5))
+    same = evidence.ratings.assign(rating=4.0)
+    made = section(Evidence(evidence.study, evidence.plan, draw_sample(same, evidence.plan), same, (), ()))
+    assert made.summary == () and made.sentences == () and len(made.drawings) == 1
+    assert "all ratings are equal, so there is nothing to explain" in str(made.body)
+    assert made.tables["cue_slopes"][["t", "p"]].isna().all(axis=None) and set(made.tables["cue_slopes"]["slope"]) == {
+        0
+    }
+
+
+def test_one_rating_each_has_no_slopes(tmp_path: Path) -> None:
+    evidence = evidence_of(tmp_path / "s", sweep(8))
+    ratings = pd.DataFrame(
+        [part.iloc[[place]].iloc[0] for place, (_, part) in enumerate(evidence.ratings.groupby("participant"))]
+    )
+    sample = draw_sample(ratings, evidence.plan)
+    made = section(Evidence(evidence.study, evidence.plan, sample, ratings, (), ()))
+    assert "0 participants rated pictures in which it differs" in str(made.body) and "cue_slopes" not in made.tables
+
+
+def test_a_manifest_without_cues_has_no_section(tmp_path: Path) -> None:
+    assert cues(evidence_of(tmp_path / "s", thesis_stimuli())) is None
+
+
+def test_a_level_that_is_a_word_is_a_predictor_of_its_own(tmp_path: Path) -> None:
+    stimuli = sweep(6)
+    for place, entry in enumerate(stimuli):
+        entry["factors"] = {"backlight": [1.2, 0.8, 1.6][place % 3], "diffuse weight": [0.2, "none"][place % 2]}
+    study = read_manifest(write_manifest(tmp_path / "s", stimuli, {}))
+    study = replace(study, factors=(*study.factors[:2], Factor("diffuse weight", (0.2, "none"))))
+    table = factor_columns(study)
+    assert list(table["backlight"]) == [1.2, 0.8, 1.6] * 2
+    assert list(table["diffuse weight none"]) == [0, 1] * 3
+    assert list(table) == ["picture", "backlight", "diffuse weight none"]
