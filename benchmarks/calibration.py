@@ -23,7 +23,7 @@ from benchmarks.calibration_cases import ALPHA, Draw, Judge
 from benchmarks.calibration_experiments import experiments
 
 RESULTS = Path(__file__).parent / "calibration.json"
-SIMULATIONS, SEED, PARTS = 1000, 2011, 20
+SIMULATIONS, SEED, PARTS = 600, 2011, 20
 HEAD = ("what is claimed", "ratings", "studies", "stated", "found", "Monte-Carlo 95%", "verdict")
 
 

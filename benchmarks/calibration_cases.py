@@ -33,7 +33,7 @@ PERSON_SD, NOISE_SD = 0.7, 0.9  # study_server.raters.Effects
 PICTURE_SD = 1.0
 BETWEEN = {"value": "rating", "group": "condition"}
 WITHIN = {"value": "rating", "within": "condition", "subject": "participant"}
-UNEQUAL = (0.4, 0.4, 0.4, 2.0)  # one picture divides people: epsilon about .35, sphericity is far off
+UNEQUAL = (0.4, 0.4, 0.4, 2.0)  # one picture divides people: epsilon .405, sphericity is far off
 
 Draw = Callable[[np.random.Generator], pd.DataFrame]
 Judge = Callable[[pd.DataFrame], Mapping[str, bool]]
