@@ -145,11 +145,11 @@ def read_text(path: Path, header: list[str], delimiter: str, names: list[str]) -
 
 def refuse_surplus(path: Path, header: list[str], delimiter: str) -> None:
     """A line with more cells than the header has names: pandas would move or drop its cells without a word."""
-    width = len(header)
-    with path.open(newline="", encoding=ENCODING) as file:
-        if all(line.count(delimiter) < width for line in file):  # as good as always, and quick
+    width, mark = len(header), delimiter.encode()
+    with path.open("rb") as file:
+        if all(line.count(mark) < width for line in file):  # as good as always, and quick
             return
-        file.seek(0)
+    with path.open(newline="", encoding=ENCODING) as file:
         reader = csv.reader(file, delimiter=delimiter)
         for cells in reader:
             if any(cells[width:]):

@@ -37,11 +37,9 @@ def groups_of(frame: pd.DataFrame, value: str, group: str) -> dict[object, Float
     levels = levels_of(present[group])
     if len(levels) < 2:
         raise Undefined(f"{value} by {group}: {len(levels)} level with ratings; a comparison needs at least two")
-    numbers = present[value].astype(float)
-    origin = float(numbers.iloc[0])
-    parts: dict[object, Floats] = {
-        level: np.asarray(numbers[present[group] == level] - origin, dtype=np.float64) for level in levels
-    }
+    numbers: Floats = present[value].to_numpy(np.float64)
+    places = present.groupby(group, observed=True, sort=False).indices
+    parts: dict[object, Floats] = {level: numbers[places[level]] - numbers[0] for level in levels}
     alone = next((level for level, part in parts.items() if len(part) < 2), None)
     if alone is not None:
         raise Undefined(f'{value} by {group}: level "{alone}" has one rating; each level needs at least two')
