@@ -147,25 +147,27 @@ def without_spread(each: Analysed) -> str:
     return f"{each.row.title}: everyone rates {which} exactly the same distance apart, so there is no paired t test."
 
 
-def table_of_assumptions(table: pd.DataFrame, mode: Mode) -> Table:
+def table_of_assumptions(table: pd.DataFrame, found: Sequence[Analysed], mode: Mode) -> Table:
     """Each row of the tests with what it takes for granted."""
     repeated = mode == "repeated"
     own = (*SPHERICITY,) if repeated else (*SPREAD,)
     head = ("Mauchly W", "p", "ε GG", "ε HF") if repeated else ("Levene W", "p", "Variance ratio")
+    titles = [each.row.title for each in found if each.anova is not None]
+    entries = list(zip(titles, table.to_dict("records"), strict=True))
+    why = [f"{title}: {entry['reason']}." for title, entry in entries if entry["reason"]]
     rows = tuple(
         (
-            sentence_case(f"{entry['question']} vs {entry['factor']}"),
+            title,
             str(entry["n"]),
             str(entry["k"]),
             *(shown(name, entry[name]) for name in (*own, *RESIDUALS[:2], "shapiro_p")),
-            entry["reason"],
         )
-        for entry in table.to_dict("records")
+        for title, entry in entries
     )
     return Table(
         "table-assumptions",
         f"What the tests take for granted, {METHODS[mode]}",
-        ("Configuration", "n", "k", *head, "Skewness", "Kurtosis", "p Shapiro–Wilk", "Without a value"),
+        ("Configuration", "n", "k", *head, "Skewness", "Kurtosis", "p Shapiro–Wilk"),
         rows,
         note="Skewness, excess kurtosis and Shapiro–Wilk’s p describe the residuals: with many people a small p says "
         "little, with few a large one says nothing. "
@@ -173,7 +175,8 @@ def table_of_assumptions(table: pd.DataFrame, mode: Mode) -> Table:
             "Greenhouse–Geisser’s correction is applied whatever Mauchly’s test says."
             if repeated
             else "Levene’s test about the medians."
-        ),
+        )
+        + (" Without a value: " + " ".join(why) if why else ""),
     )
 
 

@@ -14,19 +14,31 @@ SAME_ANSWER = 0.8  # share of the answers that are one and the same
 RUN = 10  # equal answers one after the other
 TOO_FAST = 0.1  # share of the answers
 FOCUS_MS = 30_000.0
+FENCE = 1.5  # interquartile ranges
 RETEST = 1 / 3  # of the scale's length, between showings of one picture
 
 Entry = Mapping[Hashable, float]
 
 
 def with_reasons(table: pd.DataFrame, study: StudyInfo) -> pd.DataFrame:
-    """`quality_table` with the column `stands_out`: every reason in words, empty for most people."""
+    """`quality_table` with the column `stands_out`: every reason in words, empty for most people.
+
+    Correlation and retest are judged against the other people too (Tukey's fences, 1977: 1.5 interquartile ranges):
+    where nobody agrees, a person who does not is no exception.
+    """
     scales = [q.scale for q in study.questions if q.scale is not None]
-    far = RETEST * (min(scales) - 1) if scales else math.inf
-    return table.assign(stands_out=["; ".join(reasons(entry, far)) for entry in table.to_dict("records")])
+    far = max(RETEST * (min(scales) - 1) if scales else math.inf, fence(table["retest_difference"], 0.75))
+    against = min(0.0, fence(table["person_rest_r"], 0.25))
+    return table.assign(stands_out=["; ".join(reasons(entry, far, against)) for entry in table.to_dict("records")])
 
 
-def reasons(entry: Entry, far: float) -> list[str]:
+def fence(values: "pd.Series[float]", quartile: float) -> float:
+    """Tukey's fence beyond the quartile; NaN without values."""
+    q1, q3 = values.quantile(0.25), values.quantile(0.75)
+    return float(q1 - FENCE * (q3 - q1) if quartile < 0.5 else q3 + FENCE * (q3 - q1))
+
+
+def reasons(entry: Entry, far: float, against: float) -> list[str]:
     """In the order of their weight. A measure that the file does not tell (NaN) is below every bound."""
     said = []
     if entry["failed_checks"] >= 1:
@@ -37,7 +49,7 @@ def reasons(entry: Entry, far: float) -> list[str]:
         said.append(f"{entry['longest_run']:.0f} equal answers in a row")
     if entry["too_fast_share"] >= TOO_FAST:
         said.append("too fast")
-    if entry["person_rest_r"] < 0:
+    if entry["person_rest_r"] < against:
         said.append("rates against the others")
     if entry["retest_difference"] > far:
         said.append("far from the own answer on a second showing")
@@ -89,10 +101,10 @@ def table_of_those(table: pd.DataFrame, too_fast_ms: float = TOO_FAST_MS) -> Tab
         rows,
         text_columns=3,
         note=f"Stands out: a failed check; one answer in {SAME_ANSWER:.0%} of the ratings or {RUN} times in a row; "
-        f"{TOO_FAST:.0%} of the answers faster than {too_fast_ms:g} ms; a correlation with the mean of the others "
-        f"below 0 (question means taken out); showings of one picture rated more than a third of the scale apart; "
-        f"{FOCUS_MS / 1000:g} s away from the page; answers missing. – : the file does not tell. Everyone: "
-        "tables/participants.csv.",
+        f"{TOO_FAST:.0%} of the answers faster than {too_fast_ms:g} ms; {FOCUS_MS / 1000:g} s away from the page; "
+        "answers missing; a correlation with the mean of the others (question means taken out) below 0, or showings of one "
+        f"picture rated more than a third of the scale apart, if it is also {FENCE:g} interquartile ranges beyond most "
+        "people’s. – : the file does not tell. Everyone: tables/participants.csv.",
     )
 
 

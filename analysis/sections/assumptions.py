@@ -13,7 +13,7 @@ def assumptions(evidence: Evidence) -> Section | None:
         return None
     at_ends = crowded(ends, study)
     said = [*cautions(table, evidence.main, evidence.plan), *at_ends] if len(table) else at_ends
-    shown = table_of_assumptions(table, sample.mode) if len(table) else None
+    shown = table_of_assumptions(table, evidence.main, sample.mode) if len(table) else None
     body = rendered("assumptions", table=shown, ends=at_ends, judged=len(ends) > 0)
     tables = {"assumptions": table, "scale_ends": ends}
     return Section("assumptions", "Assumptions", body, tables, warnings=tuple(said))

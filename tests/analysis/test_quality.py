@@ -13,6 +13,7 @@ from analysis.plan import AnalysisPlan
 from analysis.quality import quality_table, showings
 from analysis.reliability import rater_table, retest_table, stability_table
 from analysis.sample import draw_sample
+from analysis.standing_out import with_reasons
 
 Write = Callable[[str], Path]
 HEAD = "participant,trial,stimulus,question,rating,rt_ms,focus_lost_ms,repeat_of,check_expected,check_passed\n"
@@ -71,7 +72,7 @@ def test_those_who_stand_out_are_shown_and_kept(csv_of: Write, tmp_path: Path) -
     """The page names them and why; the numbers stand in participants.csv; nobody is removed for it."""
     results = write_report(csv_of(HEAD + "\n".join(ROWS)), tmp_path / "out", plan=AnalysisPlan(completers_only=False))
     why = {row["participant"]: row["stands_out"] for row in results["participants"]}
-    assert why["p1"] == "too fast; rates against the others; looked away"
+    assert why["p1"] == "too fast; looked away"
     assert why["p2"] == "failed 1 check" and why["p3"] == "1 answer missing"
     assert results["n_analysed"] == 3 and results["excluded"] == []
     page = (tmp_path / "out" / "index.html").read_text(encoding="utf-8")
@@ -80,6 +81,28 @@ def test_those_who_stand_out_are_shown_and_kept(csv_of: Write, tmp_path: Path) -
         in page
     )
     assert "No [analysis] was declared" not in page and "Nobody was left out." in page
+
+
+def test_who_rates_against_the_others_stands_out() -> None:
+    """Eleven agree roughly, one turns the scale round; where nobody agrees nobody stands out for it."""
+    random = np.random.default_rng(2)
+    order = np.arange(1, 8)
+
+    def found(agree: bool) -> list[str]:
+        rows = [
+            np.clip(order + random.integers(-1, 2, 7), 1, 7) if agree else random.permutation(order) for _ in range(11)
+        ]
+        cells = [
+            (f"p{who}", f"c{what}", "q", v)
+            for who, row in enumerate([*rows, order[::-1]])
+            for what, v in enumerate(row)
+        ]
+        frame = pd.DataFrame(cells, columns=["participant", "stimulus", "question", "rating"])
+        study = from_ratings(frame, "x", 7)
+        table = with_reasons(quality_table(frame, study), study).set_index("participant")["stands_out"]
+        return [str(who) for who in table.index[table == "rates against the others"]]
+
+    assert found(agree=True) == ["p11"] and found(agree=False) == []
 
 
 def test_cells_count_who_saw_and_who_is_analysed(csv_of: Write, tmp_path: Path) -> None:
