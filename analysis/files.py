@@ -21,6 +21,8 @@ def plain(table: pd.DataFrame) -> list[dict[str, Any]]:
 
 def plain_column(column: "pd.Series[Any]") -> list[Any]:
     """The cells as Python's own types."""
+    if isinstance(column.dtype, pd.StringDtype) and not column.hasnans:
+        return list(column.to_numpy(object))  # tolist asks for one cell after the other
     values = column.tolist()
     if column.dtype.kind == "f":
         return [None if value != value else value for value in values] if column.hasnans else values
