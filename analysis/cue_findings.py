@@ -17,7 +17,7 @@ from analysis.statistics.cues import (
 )
 from analysis.statistics.undefined import Undefined
 from analysis.study import Picture, StudyInfo
-from analysis.wording import counted, joined
+from analysis.wording import counted, joined, signed
 
 OWN = ("factor", "control")
 BY_FACTORS, BY_CUES = "the factors", "the cues at once"
@@ -123,37 +123,34 @@ def usable(pictures: pd.DataFrame) -> tuple[list[str], list[str]]:
 def fitted_together(pictures: pd.DataFrame) -> tuple[list[str], list[str]]:
     """The cues that one regression can hold, in their order, and a sentence on what it cannot.
 
-    A cue whose correlation with one before it, or with several of them together, exceeds `ALIKE` adds nothing; fewer
-    pictures than cues + 2 explain anything.
+    Fewer pictures than cues + 2 explain anything: then none.
     """
     z = pd.DataFrame({cue: standardised(pictures[cue]) for cue in pictures}, index=pictures.index)
+    pairwise, said = told_apart(z, together=False)
+    if len(z) < len(pairwise) + 2:
+        here = counted(len(z), "different picture")
+        return [], [*said, f"{here} cannot hold a regression on {len(pairwise)} cues at once: one cue at a time."]
+    return told_apart(z, together=True)
+
+
+def told_apart(z: pd.DataFrame, together: bool) -> tuple[list[str], list[str]]:
+    """The standardised cues whose correlation with each one kept before is at most `ALIKE`, with `together` also that
+    with all of them; and a sentence on each of the others."""
     kept: list[str] = []
     said = []
     for cue in map(str, z.columns):
         twin = next((other for other in kept if abs(float(z[cue].corr(z[other]))) > ALIKE), None)
-        if twin is None:
+        most = correlation_with(z[cue].to_numpy(), z[kept].to_numpy()) if together else 0.0
+        if twin is not None:
+            r = signed(float(z[cue].corr(z[twin])), 3)
+            said.append(f"On these pictures {cue_name(cue)} cannot be told from {cue_name(twin)} (r = {r}).")
+        elif most > ALIKE:
+            said.append(f"On these pictures {cue_name(cue)} follows from other cues (multiple R = {most:.3f}).")
+        else:
             kept.append(cue)
-        else:
-            r = float(z[cue].corr(z[twin]))
-            said.append(
-                f"On these pictures {cue_name(cue)} cannot be told from {cue_name(twin)} (r = {r:.3f}): of two "
-                "such cues the first stands for both where all are fitted at once."
-            )
-    if len(z) < len(kept) + 2:
-        pictures_here = counted(len(z), "different picture")
-        said.append(f"{pictures_here} cannot hold a regression on {len(kept)} cues at once: one cue at a time.")
-        return [], said
-    fitted: list[str] = []
-    for cue in kept:
-        together = correlation_with(z[cue].to_numpy(), z[fitted].to_numpy())
-        if together <= ALIKE:
-            fitted.append(cue)
-        else:
-            said.append(
-                f"On these pictures {cue_name(cue)} follows from the cues before it (multiple R = {together:.3f}); it "
-                "is left out where all are fitted at once."
-            )
-    return fitted, said
+    if said and together:
+        said.append(f"Fitted at once are therefore {joined([cue_name(cue) for cue in kept])}.")
+    return kept, said
 
 
 def explained_means(study: StudyInfo, frame: pd.DataFrame, used: list[str], together: list[str]) -> pd.DataFrame:

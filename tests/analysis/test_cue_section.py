@@ -96,9 +96,18 @@ def test_cues_that_others_determine_are_named() -> None:
     kept, said = fitted_together(table)
     assert kept == ["rms_contrast", "luminance_skew"]
     assert said == [
-        "On these pictures sharpness (gradient energy) follows from the cues before it (multiple R = 1.000); it is "
-        "left out where all are fitted at once."
+        "On these pictures sharpness (gradient energy) follows from other cues (multiple R = 1.000).",
+        "Fitted at once are therefore contrast and skew of luminance.",
     ]
+
+
+def test_a_cue_is_not_left_out_for_one_that_is_left_out_itself() -> None:
+    """c and d are as good as one (r = .992), but only c follows from a and b (R = .962; d: .921)."""
+    a, b, n = np.repeat([1, -1], 4), np.tile([1, 1, -1, -1], 2), np.tile([1, -1], 4)
+    table = pd.DataFrame({"a": a, "b": b, "c": a + b + 0.4 * n, "d": a + b + 0.6 * n}).astype(float)
+    kept, said = fitted_together(table)
+    assert kept == ["a", "b", "d"]
+    assert said[0] == "On these pictures c follows from other cues (multiple R = 0.962)."
 
 
 def test_a_picture_shown_more_than_once_counts_once(tmp_path: Path) -> None:
