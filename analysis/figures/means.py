@@ -17,8 +17,8 @@ from analysis.wording import sentence_case
 
 ACROSS = 3
 """Questions beside each other in a figure: more would be too small on a page."""
-SIDE_BY_SIDE, PICTURED, ENDS_SHOWN = 12, 8, 3
-"""Pictures compared in a panel, levels of a factor with thumbnails, pictures named at each end of a long row."""
+SIDE_BY_SIDE, PICTURED = 12, 8
+"""Pictures compared in a panel, levels of a factor with thumbnails: more would overlap."""
 
 
 def interval_name(mode: str, confidence: float) -> str:
@@ -67,12 +67,10 @@ def factor_figure(study: StudyInfo, mine: Sequence[Analysed], confidence: float,
 
 
 def comparison_figures(study: StudyInfo, found: Sequence[Analysed], confidence: float) -> list[Drawing]:
-    """Figure 4.6: the compared pictures side by side; of more than twelve their means in order."""
-    mine = [each for each in found if each.row.kind in ("comparison", "all") and each.means is not None]
+    """Figure 4.6: the compared pictures side by side, where they are twelve or fewer."""
+    mine = [each for each in found if each.row.kind != "factor" and each.means is not None]
     few = [each for each in mine if len(each.row.levels) <= SIDE_BY_SIDE]
-    many = [each for each in mine if len(each.row.levels) > SIDE_BY_SIDE]
-    figures = [comparison_figure(study, few, confidence)] if few else []
-    return figures + [ranked_figure(study, each, confidence, i) for i, each in enumerate(many, 1)]
+    return [comparison_figure(study, few, confidence)] if few else []
 
 
 def comparison_figure(study: StudyInfo, mine: Sequence[Analysed], confidence: float) -> Drawing:
@@ -99,53 +97,6 @@ def comparison_figure(study: StudyInfo, mine: Sequence[Analysed], confidence: fl
             f"Bars: {interval_name(mine[0].mode, confidence)}. Grey discs: all answers, area by their share."
         )
         return drawn(figure, "figure-4-6-comparison", caption)
-
-
-def ranked_figure(study: StudyInfo, each: Analysed, confidence: float, number: int) -> Drawing:
-    """Many pictures of one question from the lowest mean to the highest; the pictures at both ends are shown."""
-    assert each.means is not None
-    table = each.means.sort_values("mean", kind="stable")
-    by_code = {level.code: level for level in each.row.levels}
-    places = np.arange(len(table))
-    with mpl.rc_context(STYLE):
-        figure = Figure(figsize=(9.5, 3.6), layout=ConstrainedLayoutEngine(h_pad=0.12, w_pad=0.06))
-        axes = figure.subplots()
-        half = (table["ci_high"] - table["mean"]).fillna(0.0)
-        axes.vlines(
-            places, table["mean"] - half, table["mean"] + half, color="#9cc3e0", linewidth=min(2.0, 300 / len(table))
-        )
-        axes.plot(
-            places, table["mean"], color=COLOURS[0], marker="o", markersize=min(4.0, 600 / len(table)), linestyle="none"
-        )
-        ends = [*range(ENDS_SHOWN), *range(len(table) - ENDS_SHOWN, len(table))]
-        for end, place in enumerate(spread_out(ends, len(table))):
-            level = by_code[str(table["level"].iloc[ends[end]])]
-            file = study.picture(level.stimuli[0]).file
-            if file is not None and file.is_file():
-                place_thumbnail(axes, place, file)
-            axes.annotate(
-                folded(level.label), (place, 0), (0, -44), xycoords=("data", "axes fraction"),
-                textcoords="offset points", ha="center", va="top", fontsize=7,
-            )  # fmt: skip
-        axes.set_xticks([])
-        axes.set_xlim(-0.02 * len(table), 1.02 * len(table))
-        axes.set_title(
-            sentence_case(each.row.name if each.row.kind == "comparison" else each.row.question), fontweight="bold"
-        )
-        label_scale(axes, study.question(each.row.question), named=True)
-        caption = (
-            f"Mean ratings of “{each.row.question}”: {len(table)} pictures from the lowest mean to the highest, the "
-            f"{ENDS_SHOWN} at either end named. {answer_scale(study.question(each.row.question))}"
-            f"Bars: {interval_name(each.mode, confidence)}. Every mean stands in tables/means.csv."
-        )
-        return drawn(figure, f"figure-ranked-{number}", caption)
-
-
-def spread_out(ends: Sequence[int], total: int) -> list[float]:
-    """Places for the thumbnails of both ends that do not overlap: a fourteenth of the axis each."""
-    half = len(ends) // 2
-    low = [(i + 0.5) * total / 14 for i in range(half)]
-    return [*low, *(total - place for place in reversed(low))]
 
 
 def panel_width(mine: Sequence[Analysed]) -> float:

@@ -5,17 +5,20 @@ import pandas as pd
 from analysis.evidence import Evidence
 from analysis.figures.means import comparison_figures, factor_figures
 from analysis.figures.profiles import profile_figures, trend_table
+from analysis.figures.ranked import ranked_figures
 from analysis.figures.stacked import DRAWN, stacked_figures
 from analysis.records import means_table
 from analysis.section import Section, rendered
 from analysis.statistics.shares import AnswerShares
+
+MEANS = (factor_figures, comparison_figures, ranked_figures)
 
 
 def ratings(evidence: Evidence) -> Section | None:
     """Means by factor and of the pictures compared, the answers to every picture, and each person's line."""
     study, confidence = evidence.study, evidence.plan.confidence
     shares = share_table(evidence)
-    means = [*factor_figures(study, evidence.main, confidence), *comparison_figures(study, evidence.main, confidence)]
+    means = [figure for make in MEANS for figure in make(study, evidence.main, confidence)]
     answers = stacked_figures(study, shares)
     people = profile_figures(study, evidence.main)
     if not (means or answers):
