@@ -51,7 +51,8 @@ class PlannedTest:
         if self.difference is None:
             return ""
         if self.margin is None and self.difference <= SAME:
-            return f"no effect is stated: significant by chance alone, in at most {self.alpha:.0%} of studies"
+            chance = f"{100 * self.alpha:g}%"
+            return f"no effect is stated: significant by chance alone, in about {chance} of studies at the most"
         if self.margin is not None and self.difference >= self.margin - SAME:
             return (
                 f"the expected difference of {self.difference:.2f} is not below the margin of {self.margin:g}: "
@@ -65,13 +66,15 @@ def planned_tests(
 ) -> tuple[list[PlannedTest], list[str]]:
     """The tests of every row, the planned contrasts, equivalence of pictures compared; and what is left out, and why.
 
-    `means`: question -> stimulus id -> expected answer.
+    `means`: question -> stimulus id -> expected answer. Pictures shown again are in no test.
     """
+    shown_once = {picture.id for picture in study.pictures if picture.role != "repeat"}
     expected = pd.DataFrame(
         [
             {"participant": "expected", "stimulus": picture, "question": question, "rating": mean}
             for question, of_pictures in means.items()
             for picture, mean in of_pictures.items()
+            if picture in shown_once
         ]
     )
     rows, notes = rows_of(study, plan, expected)

@@ -76,7 +76,7 @@ def as_frame(rows: Sequence[dict[str, Any]]) -> pd.DataFrame:
 
 def as_text(rows: Sequence[dict[str, Any]], target: float, completing: float, most: int) -> str:
     """The table in columns, and below it why a test has no number of people."""
-    head = ["", "difference", f"people for {target:.0%}", "to start", "power there"]
+    head = ["", "difference", f"people for {100 * target:g}%", "to start", "power there"]
     lines = [[*head, *(f"with {entry['people']}" for entry in rows[0]["with"])], *(cells(row, most) for row in rows)]
     if completing == 1:
         lines = [[*line[:3], *line[4:]] for line in lines]

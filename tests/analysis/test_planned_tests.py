@@ -186,3 +186,16 @@ def test_what_chance_picks_has_no_expected_difference(tmp_path: Path) -> None:
     assert found["Others: offline 1 like offline 2"] == 0
     assert found["translucent: lights"] == 1
     assert [test.hopeless for test in tests if test.title == "Others"] == [""]
+
+
+def test_without_factors_every_picture_is_compared_but_no_repeat(tmp_path: Path) -> None:
+    pictures = [stimulus(number, role="compare", label=f"{number}") for number in (1, 2, 3)]
+    again = stimulus(4, role="repeat", label="3 (again)", same_picture_as="img03")
+    path = write_manifest(tmp_path, [*pictures, again], {})
+    data = json.loads(path.read_text())
+    data["study"]["factors"] = []
+    path.write_text(json.dumps(data))
+    study = read_manifest(path)
+    means = {"img01": 4.0, "img02": 4.5, "img03": 4.0, "img04": 9.0}
+    tests, _ = planned_tests(study, study.plan, "repeated", dict.fromkeys(QUESTIONS, means))
+    assert [test.difference for test in tests if test.kind == "difference"] == [0.5] * 3
