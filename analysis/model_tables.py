@@ -124,6 +124,7 @@ def table_of_shares(shares: pd.DataFrame) -> Table | None:
     """Where the variance of all ratings of a question lies."""
     if shares.empty:
         return None
+    at_zero = " 0.000: the likelihood is highest without that variance." if (shares["variance"] == 0).any() else ""
     rows = []
     for question, part in shares.groupby("question", sort=False):
         cells = {row["term"]: part_text(row) for row in part.to_dict("records")}
@@ -134,5 +135,6 @@ def table_of_shares(shares: pd.DataFrame) -> Table | None:
         ("Question", "Between pictures", "Between people", "In neither", "Ratings"),
         tuple(rows),
         note="No intervals are given: the pictures were chosen, not drawn at random. Where everyone rated every "
-        "picture once, the pictures' share is ICC(A,1), and its interval stands under Agreement.",
+        "picture once, the pictures' share is ICC(A,1), and its interval stands under Agreement."
+        f"{at_zero}",
     )

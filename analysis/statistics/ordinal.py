@@ -126,7 +126,12 @@ class OrdinalRegression:
         self, model: CountedOrderedModel, params: Floats, row: npt.NDArray[np.int64], present: pd.DataFrame
     ) -> tuple[Floats, int]:
         """Of the coefficients, and the number of clusters. `row`: which distinct row each rating is."""
-        bread: Floats = np.linalg.inv(-model.hessian(params)).astype(np.float64)
+        try:
+            bread: Floats = np.linalg.inv(-model.hessian(params)).astype(np.float64)
+        except np.linalg.LinAlgError:
+            raise Undefined(
+                f"{self.title}: the covariance of the estimates is singular, so nothing is tested"
+            ) from None
         if self.cluster is None:
             return bread[: model.k_vars, : model.k_vars], 0
         who = present.groupby(self.cluster, observed=True, sort=False).ngroup().to_numpy()
