@@ -87,7 +87,8 @@ def judge_row(each: Analysed, margin: float, alpha: float) -> tuple[list[Judged]
     try:
         pairs = Equivalence("rating", "condition", subject, margin, alpha)(each.answers)
     except Undefined as reason:
-        return [], [f"Equivalence of {each.row.title}: {reason}."]
+        labels = {level.code: level.label for level in each.row.levels}
+        return [], [f"Equivalence of {each.row.title}: {with_names(str(reason), labels)}."]
     judged = Judged(each, margin, alpha, pairs)
     reasons = [pair["reason"] for pair in judged.records if pair["verdict"] == UNTESTED]
     return [judged], [f"Equivalence of {each.row.title}: {with_names(reason, judged.labels)}." for reason in reasons]

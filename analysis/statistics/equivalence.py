@@ -69,7 +69,7 @@ class Equivalence:
         """Level -> its values less the first of all; with `subject`, of the same people in the same order."""
         if self.subject is not None:
             wide, _ = complete_table(frame, self.value, self.within, self.subject)
-            return {level: wide[level].to_numpy() for level in wide.columns}
+            return {level: np.asarray(wide[level], dtype=np.float64) for level in wide.columns}
         require_columns(frame, self.value, self.within)
         present = frame.dropna(subset=[self.value, self.within])
         levels = levels_of(present[self.within])
@@ -78,7 +78,7 @@ class Equivalence:
                 f"{self.value} by {self.within}: {len(levels)} level with ratings; a comparison needs at least two"
             )
         centred = present[self.value].astype(float) - float(present[self.value].iloc[0])
-        return {level: centred[present[self.within] == level].to_numpy() for level in levels}
+        return {level: np.asarray(centred[present[self.within] == level], dtype=np.float64) for level in levels}
 
     def pair(self, a: object, b: object, of_a: Floats, of_b: Floats) -> dict[str, object]:
         """The row of one pair, not yet adjusted."""
