@@ -136,14 +136,13 @@ def library(folder: Path, study: str) -> dict[str, float]:
 
 
 def calls_of_factorial(wide: Floats) -> dict[str, float]:
-    """Every main effect and interaction by itself, then what looks at single answers."""
+    """Every main effect, the simple effects of the interactions, then what looks at single answers."""
     shaped = wide.reshape(len(wide), *FACTORS.values())
     seconds: dict[str, float] = {}
-    for order in range(1, len(FACTORS) + 1):
-        for axes in combinations(range(1, len(FACTORS) + 1), order):
-            others = tuple(axis for axis in range(1, len(FACTORS) + 1) if axis not in axes)
-            for name, value in calls_of(shaped.mean(axis=others).reshape(len(wide), -1)).items():
-                seconds[name] = seconds.get(name, 0.0) + value
+    for axis in range(1, shaped.ndim):
+        others = tuple(other for other in range(1, shaped.ndim) if other != axis)
+        for name, value in calls_of(shaped.mean(axis=others)).items():
+            seconds[name] = seconds.get(name, 0.0) + value
     seconds |= timed(simple_effects=lambda: simple_effects(shaped))
     return seconds | calls_of_agreement(wide) | calls_of_models(wide)
 
