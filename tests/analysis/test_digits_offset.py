@@ -45,7 +45,15 @@ STATISTICS = {
     "IntraclassCorrelation": IntraclassCorrelation("rating", "picture", "person"),
     "KrippendorffAlpha": KrippendorffAlpha("rating", "picture", "person", resamples=50),
 }
-OF_STEPS = {"OrdinalRegression", "MixedModel", "VarianceComponents", "Adjusted"}
+OF_STEPS = {
+    "OrdinalRegression",
+    "MixedModel",
+    "VarianceComponents",
+    "CueRegression",
+    "CueSlopes",
+    "ExplainedMeans",
+    "Adjusted",
+}
 """The first takes answers as categories; models have tests of their own; p values have no scale."""
 ELSEWHERE = {"read_ratings", "write_report"}
 
