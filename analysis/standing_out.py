@@ -103,8 +103,8 @@ def table_of_those(table: pd.DataFrame, too_fast_ms: float = TOO_FAST_MS) -> Tab
         note=f"Stands out: a failed check; one answer in {SAME_ANSWER:.0%} of the ratings or {RUN} times in a row; "
         f"{TOO_FAST:.0%} of the answers faster than {too_fast_ms:g} ms; {FOCUS_MS / 1000:g} s away from the page; "
         "answers missing; a correlation with the mean of the others (question means taken out) below 0, or showings of "
-        f"one picture rated more than a third of the scale apart, if it is also {FENCE:g} interquartile ranges beyond most "
-        "people’s. – : the file does not tell. Everyone: tables/participants.csv.",
+        f"one picture rated more than a third of the scale apart, if it is also {FENCE:g} interquartile ranges beyond "
+        "most people’s. – : the file does not tell. Everyone: tables/participants.csv.",
     )
 
 
