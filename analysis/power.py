@@ -12,7 +12,8 @@ from scipy import special
 from statsmodels.stats.proportion import proportion_confint
 
 from analysis.planned_tests import PlannedTest
-from analysis.statistics.batches import Moments, adjusted_p
+from analysis.statistics.batches import Moments
+from analysis.statistics.multiplicity import adjusted
 from analysis.statistics.undefined import Floats
 
 Draw = Callable[[str, int, int, np.random.Generator], npt.NDArray[np.floating[Any]]]
@@ -86,11 +87,12 @@ class Simulation:
 
     def decided(self, p: Floats) -> npt.NDArray[np.bool_]:
         """(studies, tests): which reject, the tests of each family adjusted together."""
-        adjusted = p.copy()
+        deciding = p.copy()
         for family, method in dict.fromkeys((test.family, test.adjust) for test in self.tests):
             places = [place for place, test in enumerate(self.tests) if (test.family, test.adjust) == (family, method)]
-            adjusted[:, places] = adjusted_p(p[:, places], method)
-        rejects: npt.NDArray[np.bool_] = adjusted < np.array([test.alpha for test in self.tests])
+            if method != "none":
+                deciding[:, places] = adjusted(p[:, places], method)
+        rejects: npt.NDArray[np.bool_] = deciding < np.array([test.alpha for test in self.tests])
         return rejects
 
     def power(self, test: int, people: int) -> Power:

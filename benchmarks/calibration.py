@@ -5,7 +5,6 @@ so a run that was stopped is taken up where calibration.json ends. Delete that f
 """
 
 import argparse
-import gc
 import json
 import zlib
 from collections import Counter
@@ -121,7 +120,6 @@ def main() -> None:
     parser.add_argument("--seed", type=int, default=SEED)
     parser.add_argument("--out", type=Path, default=RESULTS)
     asked = parser.parse_args()
-    gc.freeze()  # statsmodels' multipletests collects garbage at each call: 70 ms over all loaded modules
     planned = experiments()
     earlier = read(asked.out, asked.seed)
     tallies = {each.name: earlier.get(each.name, Tally()) for each in planned}

@@ -106,24 +106,3 @@ def equivalence_p(pair: Moments, margin: float, paired: bool) -> Floats:
         # the test against the nearer margin has the larger p
         p = special.stdtr(df, (difference - margin) / np.sqrt(variance / n))
     return np.where(variance <= ROUNDING * (a + b), np.nan, p)
-
-
-def adjusted_p(p: Floats, method: str) -> Floats:
-    """Adjusted p values of each study, same shape (studies, tests): "none", "holm" or "fdr" (Benjamini-Hochberg).
-
-    A test without a value (NaN) keeps it and does not count. Agrees with R `p.adjust`, statsmodels `multipletests`.
-    """
-    if method == "none":
-        return p
-    order = np.argsort(p, axis=1)  # NaN last
-    ordered = np.take_along_axis(p, order, axis=1)
-    tests = np.isfinite(p).sum(axis=1, keepdims=True)
-    rank = np.arange(1, p.shape[1] + 1)
-    if method == "holm":
-        ordered = np.maximum.accumulate((tests - rank + 1) * ordered, axis=1)
-    else:
-        ordered = np.where(np.isnan(ordered), np.inf, ordered * tests / rank)
-        ordered = np.minimum.accumulate(ordered[:, ::-1], axis=1)[:, ::-1]
-    found = np.empty_like(p)
-    np.put_along_axis(found, order, np.minimum(ordered, 1.0), axis=1)
-    return np.where(np.isnan(p), np.nan, found)

@@ -7,9 +7,9 @@ import numpy as np
 import numpy.typing as npt
 import pandas as pd
 from scipy import stats
-from statsmodels.stats.multitest import multipletests
 
 from analysis.statistics.effect_size import d_z_interval
+from analysis.statistics.multiplicity import adjusted
 from analysis.statistics.undefined import SMALLEST_P, Floats, complete_table
 
 AT_ONCE = 512
@@ -41,10 +41,7 @@ class PairedContrasts:
         first, second = self.chosen(wide.shape[1])
         names = wide.columns.to_numpy(dtype=object)
         table = pd.DataFrame({"a": names[first], "b": names[second], **self.tests(wide.to_numpy(), first, second)})
-        table["p_holm"] = np.nan
-        tested = table["p"].notna()
-        if tested.any():
-            table.loc[tested, "p_holm"] = multipletests(table.loc[tested, "p"], method="holm")[1]
+        table["p_holm"] = adjusted(table["p"], "holm")
         return table[["a", "b", "difference", "ci_low", "ci_high", "t", "df", "p", "p_holm", *D_Z, "n"]]
 
     def chosen(self, k: int) -> tuple[Indices, Indices]:

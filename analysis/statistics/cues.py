@@ -8,9 +8,9 @@ import numpy as np
 import pandas as pd
 from scipy import stats
 from statsmodels.regression.linear_model import OLS
-from statsmodels.stats.multitest import multipletests
 from statsmodels.stats.outliers_influence import variance_inflation_factor
 
+from analysis.statistics.multiplicity import adjusted
 from analysis.statistics.undefined import Floats, Undefined, require_columns
 from fakesss.problem import BadInput
 
@@ -42,10 +42,7 @@ class CueSlopes:
         """The table for a long `frame`, one row per person and picture."""
         wide, pictures = by_picture(frame, self.value, self.subject, self.picture, self.cues)
         table = pd.DataFrame([self.row(cue, wide, standardised(pictures[cue])) for cue in self.cues])
-        tested = table["p"].notna()
-        table["p_holm"] = np.nan
-        if tested.any():
-            table.loc[tested, "p_holm"] = multipletests(table.loc[tested, "p"], method="holm")[1]
+        table["p_holm"] = adjusted(table["p"], "holm")
         return table[["cue", "pictures", "r", "slope", "ci_low", "ci_high", "t", "df", "p", "p_holm", "n"]]
 
     def row(self, cue: str, wide: pd.DataFrame, z: Floats) -> dict[str, object]:

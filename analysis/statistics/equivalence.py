@@ -7,10 +7,10 @@ from itertools import combinations
 import numpy as np
 import pandas as pd
 from scipy import stats
-from statsmodels.stats.multitest import multipletests
 from statsmodels.stats.weightstats import ttost_ind, ttost_paired
 
 from analysis.labels import levels_of
+from analysis.statistics.multiplicity import adjusted
 from analysis.statistics.undefined import Floats, Undefined, complete_table, require_columns
 from fakesss.problem import BadInput
 
@@ -59,10 +59,7 @@ class Equivalence:
         tested = table["reason"] == ""
         if not tested.any():
             raise Undefined(f"{self.value} by {self.within}: {table['reason'].iloc[0]}")
-        table["p_equivalence_holm"] = table["p_equivalence"]
-        if tested.sum() > 1:  # of one test nothing is adjusted, and the library takes 70 ms for it
-            adjusted = multipletests(table.loc[tested, "p_equivalence"], method="holm")[1]
-            table.loc[tested, "p_equivalence_holm"] = adjusted
+        table["p_equivalence_holm"] = adjusted(table["p_equivalence"], "holm")
         return table[list(COLUMNS)]
 
     def samples(self, frame: pd.DataFrame) -> dict[object, Floats]:

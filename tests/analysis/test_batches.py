@@ -4,10 +4,9 @@ import numpy as np
 import pandas as pd
 import pytest
 from scipy.linalg import helmert
-from statsmodels.stats.multitest import multipletests
 
 from analysis.statistics.anova import OneWayAnova, RepeatedMeasuresAnova
-from analysis.statistics.batches import Moments, adjusted_p, equivalence_p, independent_p, repeated_p
+from analysis.statistics.batches import Moments, equivalence_p, independent_p, repeated_p
 from analysis.statistics.equivalence import Equivalence
 from analysis.statistics.undefined import Floats, Undefined
 
@@ -103,18 +102,3 @@ def test_what_has_no_value_is_nan() -> None:
         assert np.isnan(equivalence_p(Moments.of(answers[..., :2]), 0.5, paired=True)).all()
     assert np.isnan(independent_p(Moments.of(equal), ((0,), (1,)))).all()
     assert np.isnan(independent_p(Moments.of(equal + np.arange(3.0)), ((0,), (1,)))).all()
-
-
-@pytest.mark.parametrize(("ours", "theirs"), [("holm", "holm"), ("fdr", "fdr_bh")])
-def test_adjusted_as_statsmodels_does(ours: str, theirs: str) -> None:
-    random = np.random.default_rng(9)
-    p = random.uniform(0, 1, (12, 7)) ** 3
-    p[random.uniform(size=p.shape) < 0.2] = np.nan
-    p[0], p[1] = np.nan, 0.01
-    found = adjusted_p(p, ours)
-    for given, adjusted in zip(p, found, strict=True):
-        there = ~np.isnan(given)
-        assert np.isnan(adjusted[~there]).all()
-        if there.any():
-            assert adjusted[there] == pytest.approx(multipletests(given[there], method=theirs)[1], rel=1e-12)
-    assert adjusted_p(p, "none") is p

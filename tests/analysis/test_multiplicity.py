@@ -6,9 +6,10 @@ from pathlib import Path
 import numpy as np
 import pandas as pd
 import pytest
+from statsmodels.stats.multitest import multipletests
 
 from analysis import Adjusted
-from analysis.statistics.multiplicity import Method
+from analysis.statistics.multiplicity import Method, adjusted
 from fakesss.problem import BadInput
 
 R = json.loads((Path(__file__).parents[1] / "data" / "statistics" / "effectsize_tost_padjust_R.json").read_text())
@@ -38,3 +39,17 @@ def test_one_test_is_adjusted_by_nothing() -> None:
 def test_a_column_that_is_not_there() -> None:
     with pytest.raises(BadInput, match='no column "p_value"'):
         Adjusted("p_value", "holm")(pd.DataFrame({"p": P}))
+
+
+@pytest.mark.parametrize(("ours", "theirs"), [("holm", "holm"), ("fdr", "fdr_bh")])
+def test_rows_of_tests_as_statsmodels_has_them(ours: Method, theirs: str) -> None:
+    """Studies x tests: each row by itself, with and without tests that have no value."""
+    random = np.random.default_rng(9)
+    p = random.uniform(0, 1, (12, 7)) ** 3
+    p[random.uniform(size=p.shape) < 0.2] = np.nan
+    p[0], p[1] = np.nan, 0.01
+    for given, found in zip(p, adjusted(p, ours), strict=True):
+        there = ~np.isnan(given)
+        assert np.isnan(found[~there]).all()
+        if there.any():
+            assert found[there] == pytest.approx(multipletests(given[there], method=theirs)[1], rel=1e-12)
