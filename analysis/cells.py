@@ -1,4 +1,4 @@
-"""How many people saw, answered and are analysed for each picture and question."""
+"""How many people were to rate each picture, did, and are analysed, question by question."""
 
 import pandas as pd
 
@@ -8,22 +8,23 @@ from analysis.study import Picture, StudyInfo
 from analysis.tables import Table
 from analysis.wording import counted, level_text
 
-COUNTS = ("n_shown", "n_answered", "n_analysed", "n_missing")
+COUNTS = ("n_expected", "n_answered", "n_analysed", "n_missing")
 
 
 def cell_table(sample: Sample, study: StudyInfo) -> pd.DataFrame:
     """A row per picture and question of the study, in the order of both.
 
-    Columns: `question, stimulus, label, levels` ("light = 0.8, veil = thin"), `n_shown` (people), `n_answered`,
-    `n_missing` (shown and not answered), `n_analysed` (answers used: those of people who are analysed).
+    Columns: `question, stimulus, label, levels` ("light = 0.8, veil = thin"), `n_expected` (people
+    who were to rate it: those with a line in the file, also where they left before it came), `n_answered`,
+    `n_missing` (expected and not answered), `n_analysed` (answers used: those of people who are analysed).
     """
     shown = sample.of_everyone[is_first_showing(sample.of_everyone)]
     cells = [shown["question"], shown["stimulus"]]
     counts = pd.DataFrame(
-        {"n_shown": shown.groupby(cells)["rating"].size(), "n_answered": shown.groupby(cells)["rating"].count()}
+        {"n_expected": shown.groupby(cells)["rating"].size(), "n_answered": shown.groupby(cells)["rating"].count()}
     )
     counts["n_analysed"] = sample.ratings.groupby(["question", "stimulus"]).size()
-    counts["n_missing"] = counts["n_shown"] - counts["n_answered"]
+    counts["n_missing"] = counts["n_expected"] - counts["n_answered"]
     known = [study.picture(str(name)) for name in shown["stimulus"].unique()]
     listed = {picture.id: picture for picture in (*study.pictures, *known)}
     order = pd.MultiIndex.from_product(
@@ -47,9 +48,9 @@ def in_every_cell(cells: pd.DataFrame) -> str:
         return ""
     first, questions = cells.iloc[0], cells["question"].nunique()
     each = "the question" if questions == 1 else f"each of {questions} questions"
-    people = "people" if first["n_shown"] != 1 else "person"
+    people = "people" if first["n_expected"] != 1 else "person"
     return (
-        f"Each of {counted(len(cells) // questions, 'picture')} was shown to {first['n_shown']} {people} and has "
+        f"Each of {counted(len(cells) // questions, 'picture')} was to be rated by {first['n_expected']} {people}, with "
         f"{counted(int(first['n_analysed']), 'answer')} analysed on {each}."
     )
 
@@ -69,12 +70,12 @@ def table_of_cells(cells: pd.DataFrame) -> Table:
         ("Picture", *(("Levels",) if with_levels else ()), *questions),
         tuple(rows),
         text_columns=2 if with_levels else 1,
-        note='"40 of 44": 40 answers are analysed of 44 people who saw the picture. Missing answers: tables/cells.csv.',
+        note='"40 of 44": 40 answers are analysed of 44 people who were to rate it. Missing answers: tables/cells.csv.',
     )
 
 
 def in_words(cell: "pd.Series[int]") -> str:
     """40 of 44."""
-    if cell["n_shown"] == cell["n_analysed"]:
+    if cell["n_expected"] == cell["n_analysed"]:
         return str(cell["n_analysed"])
-    return f"{cell['n_analysed']} of {cell['n_shown']}"
+    return f"{cell['n_analysed']} of {cell['n_expected']}"

@@ -9,7 +9,7 @@ import pandas as pd
 
 from analysis.study import StudyInfo
 
-SOFTWARE = ("fakesss", "numpy", "scipy", "pandas", "statsmodels", "pingouin", "matplotlib")
+SOFTWARE = ("fakesss", "numpy", "scipy", "pandas", "statsmodels", "pingouin", "krippendorff", "matplotlib")
 
 
 def provenance(ratings: Path, frame: pd.DataFrame, study: StudyInfo, command: str) -> dict[str, str]:

@@ -5,7 +5,7 @@ from difflib import get_close_matches
 
 import pandas as pd
 
-from analysis.plan import BEST, AnalysisPlan
+from analysis.plan import AnalysisPlan
 from analysis.results import Analysed
 from analysis.sample import Sample
 from analysis.study import StudyInfo
@@ -35,7 +35,7 @@ def remarks(
     said += [sentence for each in found for sentence in each.trouble]
     said += notes
     said += dict.fromkeys(sentence for each in found for sentence in row_remarks(each))
-    if any(BEST in comparison.stimuli for comparison in plan.comparison):
+    if any(each.row.kind == "comparison" and each.row.picked_best for each in found):
         said.append('The "best" own picture was picked by the same ratings: the choice flatters its mean.')
     tested = [each.p for each in found if each.p is not None]
     if plan.adjust == "none" and len(tested) > 1 and min(tested) < plan.alpha:

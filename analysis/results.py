@@ -126,9 +126,10 @@ def analyse(row: Row, sample: Sample, plan: AnalysisPlan, mode: Mode) -> Analyse
     found: dict[str, Any] = {}
     if anova is not None:
         if subject is not None:
-            ranks = Friedman if anova["k"].iloc[0] > 2 else SignedRanks
-            name = "friedman" if ranks is Friedman else "wilcoxon"
-            found[name] = first_row(attempt(ranks("rating", "condition", subject), cells))
+            if "ranks" in plan.tests:
+                ranks = Friedman if anova["k"].iloc[0] > 2 else SignedRanks
+                name = "friedman" if ranks is Friedman else "wilcoxon"
+                found[name] = first_row(attempt(ranks("rating", "condition", subject), cells))
             contrasts = PairedContrasts("rating", "condition", subject, plan.confidence, plan.contrasts)
             found["contrasts"] = attempt(contrasts, cells)
         found["tukey"] = attempt(TukeyHSD("rating", "condition", subject, plan.confidence), cells)

@@ -31,8 +31,11 @@ class Level:
 @dataclass(frozen=True)
 class Row:
     """One analysis: a question by a factor, by an interaction of factors ("A × B"; its samples are the combinations of
-    their levels), or by pictures compared. `factors`: their names;
-    `crossed`: the full factorial that a factor or an interaction is part of."""
+    their levels), or by pictures compared.
+
+    `factors`: their names; `crossed`: the full factorial that a factor or an interaction is part of; `picked_best`: the
+    ratings themselves chose one of the pictures compared.
+    """
 
     name: str
     kind: Kind
@@ -40,6 +43,7 @@ class Row:
     levels: tuple[Level, ...]
     crossed: Crossed | None = None
     factors: tuple[str, ...] = ()
+    picked_best: bool = False
 
     @property
     def title(self) -> str:
@@ -155,7 +159,8 @@ def comparison_row(study: StudyInfo, comparison: Comparison, ratings: pd.DataFra
         levels.append(Level(f"M{len(levels) + 1}", f"best own, {label}" if name == BEST else label, (identity,)))
     if len({level.stimuli for level in levels}) < len(levels):
         return f'{where}: "best" turned out to be a picture that is also named; left out'
-    return Row(comparison.name, "comparison", comparison.question, tuple(levels))
+    best = BEST in comparison.stimuli
+    return Row(comparison.name, "comparison", comparison.question, tuple(levels), picked_best=best)
 
 
 def best_of(own: pd.DataFrame) -> str:

@@ -35,7 +35,9 @@ def no_zero(value: float, places: int) -> str:
 
 
 def apa_p(p: float) -> str:
-    """p = .012, p < .001."""
+    """p = .012, p < .001, p > .999."""
+    if p > 0.999:
+        return "p > .999"
     return "p < .001" if p < 0.001 else f"p = {no_zero(p, 3)}"
 
 

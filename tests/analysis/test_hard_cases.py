@@ -115,7 +115,7 @@ def test_a_picture_and_a_level_nobody_rated(csv_of: Callable[[str], Path], tmp_p
     assert "Never rated: img03." in results["warnings"]
     assert {row["df1"] for row in results["anova"]} == {1}
     unseen = [row for row in results["cells"] if row["stimulus"] == "img03"]
-    assert all((row["n_shown"], row["n_analysed"]) == (0, 0) for row in unseen)
+    assert all((row["n_expected"], row["n_analysed"]) == (0, 0) for row in unseen)
 
 
 @pytest.mark.long

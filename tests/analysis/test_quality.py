@@ -110,7 +110,7 @@ def test_cells_count_who_saw_and_who_is_analysed(csv_of: Write, tmp_path: Path) 
     path = csv_of(HEAD + "\n".join(ROWS))
     everybody = write_report(path, tmp_path / "a", plan=AnalysisPlan(completers_only=False))
     counts = {
-        row["stimulus"]: (row["n_shown"], row["n_answered"], row["n_missing"], row["n_analysed"])
+        row["stimulus"]: (row["n_expected"], row["n_answered"], row["n_missing"], row["n_analysed"])
         for row in everybody["cells"]
     }
     assert (counts["a"], counts["c"]) == ((3, 3, 0, 3), (3, 2, 1, 2))
