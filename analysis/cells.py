@@ -50,7 +50,7 @@ def in_every_cell(cells: pd.DataFrame) -> str:
     each = "the question" if questions == 1 else f"each of {questions} questions"
     people = "people" if first["n_expected"] != 1 else "person"
     return (
-        f"Each of {counted(len(cells) // questions, 'picture')} was to be rated by {first['n_expected']} {people}, with "
+        f"Each of {counted(len(cells) // questions, 'picture')} had {first['n_expected']} {people} to rate it, with "
         f"{counted(int(first['n_analysed']), 'answer')} analysed on {each}."
     )
 
