@@ -7,6 +7,7 @@ import re
 import warnings
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
+from functools import lru_cache
 from pathlib import Path
 from typing import Any
 
@@ -89,7 +90,14 @@ def place_thumbnail(axes: Axes, place: float, file: Path, side: float = 36, besi
 
 
 def thumbnail(file: Path, side: int = THUMBNAIL) -> Image.Image:
-    """The picture cut square about its centre and reduced to `side` pixels."""
+    """The picture cut square about its centre and reduced to `side` pixels; decoded once, until its file changes."""
+    found = file.stat()
+    return reduced(file, side, found.st_mtime_ns, found.st_size)
+
+
+@lru_cache(maxsize=256)
+def reduced(file: Path, side: int, changed: int, size: int) -> Image.Image:
+    """The thumbnail of a file that `changed` (nanoseconds) and `size` (bytes) tell from what stood there before."""
     with Image.open(file) as picture:
         colour = picture.convert("RGB")
     edge = min(colour.size)
@@ -121,6 +129,7 @@ def drawn(figure: Figure, stem: str, caption: str) -> Drawing:
     svg, png = io.StringIO(), io.BytesIO()
     with warnings.catch_warnings(record=True) as caught:
         warnings.filterwarnings("always", message=r"Glyph \d+")
+        lay_out(figure)
         figure.savefig(svg, format="svg", metadata=NO_DATE)
         FigureCanvasAgg(figure).print_figure(png, format="png", dpi=200, metadata={"Software": None})
     codes = {int(code) for each in caught for code in re.findall(r"^Glyph (\d+)", str(each.message))}
@@ -128,17 +137,27 @@ def drawn(figure: Figure, stem: str, caption: str) -> Drawing:
     return Drawing(stem, text, png.getvalue(), caption, "".join(map(chr, sorted(codes))), pictures)
 
 
+def lay_out(figure: Figure) -> None:
+    """Places what is in the figure for good: matplotlib would do so again, and draw all twice, for each format."""
+    engine = figure.get_layout_engine()
+    if engine is not None:
+        engine.execute(figure)
+        figure.set_layout_engine(None)
+
+
 def named_pictures(figure: Figure) -> tuple[list[str], dict[str, str]]:
     """Marks every thumbnail placed in `figure`; the key of each in turn, and key -> `data:` address."""
     keys: list[str] = []
     pictures: dict[str, str] = {}
-    for place, box in enumerate(figure.findobj(AnnotationBbox)):
-        assert isinstance(box, AnnotationBbox) and isinstance(box.offsetbox, OffsetImage)
+    placed = (artist for axes in figure.axes for artist in axes.artists if isinstance(artist, AnnotationBbox))
+    for place, box in enumerate(placed):
+        assert isinstance(box.offsetbox, OffsetImage)
         pixels = np.asarray(box.offsetbox.get_data())
         key = hashlib.sha256(pixels.tobytes()).hexdigest()[:12]
         box.set_gid(f"thumbnail-{place}")
         keys.append(key)
-        pictures.setdefault(key, data_uri(Image.fromarray(pixels)))
+        if key not in pictures:
+            pictures[key] = data_uri(Image.fromarray(pixels))
     return keys, pictures
 
 
