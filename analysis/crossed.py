@@ -44,11 +44,6 @@ class Crossed:
         cells = frame.groupby([self.subject, *self.names], observed=True)
         return cells[self.value].mean().reset_index()
 
-    def complete(self, ratings: pd.DataFrame) -> set[str]:
-        """Who rated every combination."""
-        count = self.frame(ratings).groupby(self.subject).size()
-        return set(count.index[count == len({cell for _, cell in self.cells})])
-
     @property
     def subject(self) -> str:
         """The column of people: a name that no factor has."""

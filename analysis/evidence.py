@@ -5,6 +5,7 @@ from dataclasses import dataclass
 
 import pandas as pd
 
+from analysis.factorials import factorials_of
 from analysis.families import adjusted
 from analysis.plan import AnalysisPlan, Mode
 from analysis.results import Analysed, analyse
@@ -46,10 +47,11 @@ def gather(
     between = [row for row in rows if row.kind != "interaction"]
     jobs = [(row, mode) for mode in (sample.mode, other) for row in (rows if mode == "repeated" else between)]
     tell = progress or (lambda done, total, what: None)
+    factorials = factorials_of(rows, sample.ratings)
     found = []
     for done, (row, mode) in enumerate(jobs):
         tell(done, len(jobs), row.title)
-        found.append(analyse(row, sample, plan, mode))
+        found.append(analyse(row, sample, plan, mode, factorials))
     tell(len(jobs), len(jobs), "writing")
     main = adjusted([each for each in found if each.mode == sample.mode], plan)
     rest = tuple(each for each in found if each.mode == other)

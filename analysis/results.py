@@ -1,20 +1,19 @@
 """Every declared analysis run, in both modes; what has no value is said in a sentence."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from typing import Any
 
 import pandas as pd
 
+from analysis.factorials import Factorial
 from analysis.plan import AnalysisPlan, Mode
 from analysis.rows import Row
 from analysis.sample import Sample
 from analysis.statistics.anova import OneWayAnova, RepeatedMeasuresAnova
 from analysis.statistics.contrasts import PairedContrasts
-from analysis.statistics.factorial import FactorialAnova
 from analysis.statistics.friedman import Friedman
 from analysis.statistics.intervals import MeanIntervals
-from analysis.statistics.simple_effects import SimpleEffects
 from analysis.statistics.tukey import TukeyHSD
 from analysis.statistics.undefined import Undefined
 from analysis.statistics.wilcoxon import SignedRanks
@@ -108,16 +107,22 @@ class Attempts:
             return None
 
 
-def analyse(row: Row, sample: Sample, plan: AnalysisPlan, mode: Mode) -> Analysed:
-    """All statistics of `row` in `mode`. An interaction has them within people alone."""
+def analyse(row: Row, sample: Sample, plan: AnalysisPlan, mode: Mode, factorials: Mapping[str, Factorial]) -> Analysed:
+    """All statistics of `row` in `mode`. An interaction has them within people alone.
+
+    `factorials`: question -> its full factorial; a row that is part of one has the error terms of the whole, and its
+    people: who rated every combination.
+    """
     attempt = Attempts(f"{row.title} ({METHODS[mode]})")
     cells = row.cells(sample.ratings)
     cells["condition"] = pd.Categorical(cells["condition"], [level.code for level in row.levels])
-    effect = effect_in_factorial(row, sample.ratings) if mode == "repeated" else None
-    if row.crossed is not None and isinstance(effect, dict):
-        cells = cells[cells["participant"].isin(row.crossed.complete(sample.ratings))]
+    whole = factorials[row.question] if row.crossed is not None and mode == "repeated" else None
+    effect = whole.effect(row.name) if whole is not None else None
+    if whole is not None and isinstance(effect, dict):
+        cells = cells[cells["participant"].isin(whole.people)]
     if row.kind == "interaction":
-        return analyse_interaction(row, sample, plan, mode, cells, effect)
+        assert whole is not None
+        return analyse_interaction(row, plan, mode, cells, whole)
     subject = "participant" if mode == "repeated" else None
     one_way: Statistic = OneWayAnova("rating", "condition")
     if subject is not None:
@@ -144,35 +149,16 @@ def analyse(row: Row, sample: Sample, plan: AnalysisPlan, mode: Mode) -> Analyse
     return Analysed(row, mode, answers=cells, trouble=tuple(attempt.trouble), **found)
 
 
-def effect_in_factorial(row: Row, ratings: pd.DataFrame) -> dict[str, Any] | str | None:
-    """A main effect or an interaction with the error terms of the whole factorial, or the sentence why it has no value;
-    None for a row that is part of no factorial."""
-    if row.crossed is None:
-        return None
-    whole = row.crossed
-    try:
-        found = first_row(FactorialAnova(whole.value, whole.names, whole.subject, row.name)(whole.frame(ratings)))
-    except Undefined as reason:
-        return str(reason)
-    assert found is not None
-    return found["reason"] or found
-
-
-def analyse_interaction(
-    row: Row, sample: Sample, plan: AnalysisPlan, mode: Mode, cells: pd.DataFrame, effect: dict[str, Any] | str | None
-) -> Analysed:
+def analyse_interaction(row: Row, plan: AnalysisPlan, mode: Mode, cells: pd.DataFrame, whole: Factorial) -> Analysed:
     """Cell means, the interaction of the factorial, and its simple effects."""
-    assert row.crossed is not None and effect is not None
+    effect = whole.effect(row.name)
     if isinstance(effect, str):
         means = MeanIntervals("rating", "condition", None, plan.confidence)(cells)
         why = f"{row.title} ({METHODS[mode]}): {effect}"
         return Analysed(row, mode, sizes(cells, None), means, None, cells, trouble=(why,))
     means = MeanIntervals("rating", "condition", "participant", plan.confidence)(cells)
-    part = row.crossed.of(row.factors)
-    people = sample.ratings["participant"].isin(cells["participant"].unique())
-    simple = SimpleEffects(part.value, part.names, part.subject)(part.frame(sample.ratings[people]))
     n = (int(effect["n"]),) * len(row.levels)
-    return Analysed(row, mode, n, means, effect, cells, simple=simple)
+    return Analysed(row, mode, n, means, effect, cells, simple=whole.simple(row.factors))
 
 
 def sizes(cells: pd.DataFrame, anova: pd.DataFrame | None) -> tuple[int, ...]:

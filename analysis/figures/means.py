@@ -20,6 +20,9 @@ ACROSS = 3
 SIDE_BY_SIDE, PICTURED = 12, 8
 """Pictures compared in a panel, levels of a factor with thumbnails: more would overlap."""
 
+DISCS = 60
+"""Different answers above each other."""
+
 
 def interval_name(mode: str, confidence: float) -> str:
     """The kind of interval, for captions."""
@@ -61,7 +64,7 @@ def factor_figure(study: StudyInfo, mine: Sequence[Analysed], confidence: float,
             label_scale(axes, study.question(each.row.question), named=column == 0)
         caption = (
             f"Mean ratings by factor (rows) and question (columns). {answer_scale(study.question(questions[0]))}"
-            f"Bars: {interval_name(mine[0].mode, confidence)}. Grey discs: all answers, area by their share."
+            f"Bars: {interval_name(mine[0].mode, confidence)}. {discs_named(mine)}"
         )
         return drawn(figure, f"figure-4-5-factors{suffix}", caption)
 
@@ -94,7 +97,7 @@ def comparison_figure(study: StudyInfo, mine: Sequence[Analysed], confidence: fl
             axes.remove()
         caption = (
             f"Mean ratings of the pictures compared. {answer_scale(study.question(mine[0].row.question))}"
-            f"Bars: {interval_name(mine[0].mode, confidence)}. Grey discs: all answers, area by their share."
+            f"Bars: {interval_name(mine[0].mode, confidence)}. {discs_named(mine)}"
         )
         return drawn(figure, "figure-4-6-comparison", caption)
 
@@ -138,10 +141,22 @@ def draw_means(axes: Axes, each: Analysed, study: StudyInfo, colour: str, joined
     axes.tick_params(axis="x", length=0, pad=pad)
 
 
+def discs_named(mine: Sequence[Analysed]) -> str:
+    """What the discs are, for captions."""
+    classed = any(each.answers["rating"].nunique() > DISCS for each in mine)
+    whose = "each person’s mean over the pictures of a level, in classes" if classed else "all answers"
+    return f"Grey discs: {whose}, area by their share."
+
+
 def draw_answers(axes: Axes, each: Analysed, codes: list[object]) -> None:
-    """A faint disc for each answer that was given, area by how many gave it."""
+    """A faint disc for each answer that was given, area by how many gave it; persons' means over many pictures take
+    too many values for that, and stand at the nearest of a grid."""
+    answers = each.answers["rating"]
+    if answers.nunique() > DISCS:
+        step = np.ptp(answers) / DISCS
+        answers = (answers / step).round() * step
     for place, code in enumerate(codes):
-        given = each.answers[each.answers["condition"] == code]["rating"].value_counts()
+        given = answers[each.answers["condition"] == code].value_counts()
         share = given / given.sum()
         axes.scatter(
             np.full(len(share), place),

@@ -64,6 +64,10 @@ class RepeatedMeasuresAnova:
     def __call__(self, frame: pd.DataFrame) -> pd.DataFrame:
         """The table for a long `frame`, one row per participant and level."""
         wide, dropped = complete_table(frame, self.value, self.within, self.subject)
+        return pd.DataFrame([{**self.of_table(wide), "dropped": "; ".join(dropped)}])
+
+    def of_table(self, wide: pd.DataFrame) -> dict[str, float]:
+        """The row, less `dropped`, for a complete people x levels table, centred as `complete_table` does."""
         self.refuse_no_residual(wide)
         table = library_anova(wide)
         effect, error = table.iloc[0], table.iloc[1]
@@ -72,10 +76,9 @@ class RepeatedMeasuresAnova:
         df1, df2 = int(effect["DF"]), int(error["DF"])
         row = {"F": float(effect["F"]), "df1": df1, "df2": df2, "p": not_zero(effect["p_unc"])}
         row |= {"ss_effect": float(effect["SS"]), "ss_subject": ss_subject, "ss_error": ss_error}
-        row |= {"ms_error": ss_error / df2, **sphericity(wide, row["F"], df1, df2)}
+        row |= {"ms_error": ss_error / df2, **sphericity(wide, effect)}
         row |= effect_sizes(row["ss_effect"], ss_subject, ss_error, df1, df2)
-        row |= {"n": len(wide), "k": wide.shape[1]}
-        return pd.DataFrame([{**row, "dropped": "; ".join(dropped)}])
+        return row | {"n": len(wide), "k": wide.shape[1]}
 
     def refuse_no_residual(self, wide: pd.DataFrame) -> None:
         """When every participant shows the same differences there is no error to test them against."""
@@ -92,13 +95,15 @@ class RepeatedMeasuresAnova:
 
 def library_anova(wide: pd.DataFrame) -> pd.DataFrame:
     """pingouin's table (effect, error) of a complete subjects x levels table."""
-    levels = [f"M{index}" for index in range(wide.shape[1])]
-    plain = pd.DataFrame(wide.to_numpy(), columns=levels).rename_axis("subject").reset_index()
-    frame = plain.melt("subject", levels, "level", "value")
+    # numbers for names: the library sorts and groups them many times over
+    n, k = wide.shape
+    frame = pd.DataFrame({"subject": np.tile(np.arange(n), k), "level": np.repeat(np.arange(k), n)})
+    frame["value"] = wide.to_numpy().ravel(order="F")
     if wide.shape == (2, 3):  # pingouin 0.7.0 goes on to Mauchly's test, whose constants are 1/0 just there
         test = AnovaRM(frame, "value", "subject", ["level"]).fit().anova_table.iloc[0]
         between = 2 * float(((wide.mean() - wide.to_numpy().mean()) ** 2).sum())
         effect = {"SS": between, "DF": test["Num DF"], "F": test["F Value"], "p_unc": test["Pr > F"]}
+        effect["eps"] = pingouin.epsilon(wide, correction="gg")
         return pd.DataFrame([effect, {"DF": test["Den DF"]}])
     with warnings.catch_warnings():
         # pingouin 0.7.0 calls DataFrame.dropna(inplace=True), which pandas 3.1 announces to remove
@@ -107,19 +112,23 @@ def library_anova(wide: pd.DataFrame) -> pd.DataFrame:
     return pd.DataFrame(found)
 
 
-def sphericity(wide: pd.DataFrame, f: float, df1: int, df2: int) -> dict[str, float]:
-    """Both epsilons, the p values they give, and Mauchly's test where it means something."""
+def sphericity(wide: pd.DataFrame, effect: pd.Series) -> dict[str, float]:
+    """Both epsilons, the p values they give, and Mauchly's test where it means something.
+
+    `effect`: the first row of `library_anova(wide)`, which has Greenhouse and Geisser's epsilon and Mauchly's test.
+    """
+    f, df1 = float(effect["F"]), int(effect["DF"])
+    df2 = df1 * (len(wide) - 1)
     if wide.shape[1] == 2:
         p = not_zero(stats.f.sf(f, df1, df2))
         return {"epsilon_gg": 1.0, "p_gg": p, "epsilon_hf": 1.0, "p_hf": p, "mauchly_w": np.nan, "mauchly_p": np.nan}
-    gg = float(pingouin.epsilon(wide, correction="gg"))
+    gg = float(effect["eps"])
     # of as many people as levels, an even spread leaves Huynh and Feldt's fraction nothing to divide by: its limit is 1
     spare = len(wide) - 1 - df1 * gg
     hf = float(pingouin.epsilon(wide, correction="hf")) if spare > ROUNDING else 1.0
     w = p_mauchly = np.nan
     if len(wide) > wide.shape[1]:
-        test = pingouin.sphericity(wide)
-        w, p_mauchly = float(test.W), float(test.pval)
+        w, p_mauchly = float(effect["W_spher"]), float(effect["p_spher"])
     corrected = {f"p_{name}": not_zero(stats.f.sf(f, df1 * e, df2 * e)) for name, e in (("gg", gg), ("hf", hf))}
     return {"epsilon_gg": gg, "epsilon_hf": hf, **corrected, "mauchly_w": w, "mauchly_p": p_mauchly}
 

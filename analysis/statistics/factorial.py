@@ -24,21 +24,19 @@ class FactorialAnova:
 
     Each effect is tested on its own orthonormal contrasts: people x df1 scores, turned into a table of df1 + 1 columns,
     of which pingouin's one-way analysis has the sums of squares, degrees of freedom, F and epsilon of the effect
-    (Maxwell & Delaney 2004, chapter 12). Returns a row per effect, main effects first, or `only` that of the effect
-    named: `effect` ("A", "A × B"), `factors` (tuple), `F, df1, df2, ss_effect, ss_error, ms_error, p`, the corrected p
-    values and effect sizes of `RepeatedMeasuresAnova`, `n, dropped`. `generalized_eta_squared` has all variation
-    between people and every error term in its denominator (Olejnik & Algina 2003, eq. 4, all factors manipulated
-    within). An effect without error has NaN and a sentence in `reason`, which is empty elsewhere. Mauchly's p is that
-    of a one-way table of df1 + 1 levels. Agrees with R `afex::aov_ez(subject, value, within = within)`,
-    pingouin.rm_anova and statsmodels AnovaRM (whose dense design takes the cube of people x cells). Raises `Undefined`
-    where no effect has a value: a combination nobody rated, fewer than two complete people, all ratings equal. Not for
-    designs with factors between people.
+    (Maxwell & Delaney 2004, chapter 12). Returns a row per effect, main effects first: `effect` ("A", "A × B"),
+    `factors` (tuple), `F, df1, df2, ss_effect, ss_error, ms_error, p`, the corrected p values and effect sizes of
+    `RepeatedMeasuresAnova`, `n, dropped`. `generalized_eta_squared` has all variation between people and every error
+    term in its denominator (Olejnik & Algina 2003, eq. 4, all factors manipulated within). An effect without error has
+    NaN and a sentence in `reason`, which is empty elsewhere. Mauchly's p is that of a one-way table of df1 + 1 levels.
+    Agrees with R `afex::aov_ez(subject, value, within = within)`, pingouin.rm_anova and statsmodels AnovaRM (whose
+    dense design takes the cube of people x cells). Raises `Undefined` where no effect has a value: a combination nobody
+    rated, fewer than two complete people, all ratings equal. Not for designs with factors between people.
     """
 
     value: str
     within: tuple[str, ...]
     subject: str
-    only: str = ""
 
     def __call__(self, frame: pd.DataFrame) -> pd.DataFrame:
         """The table for a long `frame`, one row per participant and combination of levels."""
@@ -53,8 +51,6 @@ class FactorialAnova:
         rows = []
         for effect, own in scores.items():
             names = tuple(self.within[place] for place in effect)
-            if self.only not in ("", CROSS.join(names)):
-                continue
             others = between + sum(errors.values()) - errors[effect]
             rows.append({"effect": CROSS.join(names), "factors": names, **self.effect(own, errors[effect], others)})
         return pd.DataFrame(rows).assign(n=len(wide), dropped="; ".join(dropped))
@@ -75,9 +71,9 @@ class FactorialAnova:
             return {**row, **dict.fromkeys((*NOTHING, *NO_SIZE), np.nan), "reason": why}
         table = pd.DataFrame(scores @ helmert(df1 + 1))
         found = library_anova(table).iloc[0]
-        f, p = float(found["F"]), float(found["p_unc"])
         sizes = effect_sizes(ss_effect, others, ss_error, df1, df2)
-        return {"F": f, **row, "p": p, **sphericity(table, f, df1, df2), **sizes, "reason": ""}
+        row = {"F": float(found["F"]), **row, "p": float(found["p_unc"]), **sphericity(table, found)}
+        return {**row, **sizes, "reason": ""}
 
 
 def effects_of(count: int) -> Iterator[tuple[int, ...]]:

@@ -48,9 +48,8 @@ class SimpleEffects:
 
     def of_part(self, wide: pd.DataFrame, factor: str) -> dict[str, object]:
         """The analysis of one people x levels part, or why it has none."""
-        long = wide.rename_axis(index=self.subject).melt(ignore_index=False, value_name=self.value, var_name=factor)
         try:
-            row = RepeatedMeasuresAnova(self.value, factor, self.subject)(long.reset_index()).iloc[0]
+            row = RepeatedMeasuresAnova(self.value, factor, self.subject).of_table(wide - wide.iloc[0, 0])
         except Undefined as reason:
             return {**dict.fromkeys(SHOWN, np.nan), "reason": str(reason)}
         return {**{name: row[name] for name in SHOWN}, "reason": ""}

@@ -12,6 +12,7 @@ import pytest
 from thesis_study import QUESTIONS, stimulus, thesis_stimuli, write_manifest
 
 from analysis.evidence import BETWEEN, Evidence
+from analysis.factorials import factorials_of
 from analysis.families import adjusted
 from analysis.margins import equivalence_table, judge
 from analysis.plan import Mode
@@ -84,9 +85,11 @@ def reported(study: StudyInfo, mode: Mode) -> Evidence:
         ]
     ratings = pd.DataFrame(rows, columns=["participant", "stimulus", "question", "rating"])
     sample = draw_sample(ratings, study.plan)
+    listed, _ = rows_of(study, study.plan, sample.ratings)
+    factorials = factorials_of(listed, sample.ratings)
     found = [
-        analyse(row, sample, study.plan, mode)
-        for row in rows_of(study, study.plan, sample.ratings)[0]
+        analyse(row, sample, study.plan, mode, factorials)
+        for row in listed
         if mode == "repeated" or row.kind != "interaction"
     ]
     return Evidence(study, study.plan, sample, ratings, adjusted(found, study.plan), ())

@@ -49,7 +49,7 @@ def found(request: pytest.FixtureRequest, tmp_path_factory: pytest.TempPathFacto
     sample = draw_sample(read_ratings(DATA / f"{FIXTURES[request.param]}.csv"), study.plan)
     rows, notes = rows_of(study, study.plan, sample.ratings)
     assert not notes
-    return [analyse(row, sample, study.plan, request.param) for row in rows]
+    return [analyse(row, sample, study.plan, request.param, {}) for row in rows]
 
 
 def by_row(found: list[Analysed]) -> dict[tuple[str, str], Analysed]:
