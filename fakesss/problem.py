@@ -28,6 +28,7 @@ WORDS = (
     ("Input should be", "must be"),
     ("Tuple should have", "must have"),
     (" after validation", ""),
+    ("String should have at least 1 character", "must not be empty; write a word"),
     ("a valid array", "a list"),
     ("an object", "a table"),
     ("greater than or equal to", ">="),

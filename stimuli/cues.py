@@ -17,6 +17,7 @@ from fakesss.colour import decode_srgb, luminance
 Float64 = NDArray[np.float64]
 FLAT = 1e-5  # relative spread that is rounding: no display shows it, and float32 leaves 5e-7 at the object's edge
 HIGHLIGHT = 0.5  # of the display's white, in every channel
+DARKEST = float(decode_srgb(np.array([1 / 255]))[0])  # linear light of the display's first code value, .0003
 DIGITS, DECIMALS = 6, 9  # kept: sums differ beyond them from processor to processor
 NOTHING_COVERED = "no pixel shows the object"
 MADE_ELSEWHERE = "the picture was made elsewhere, so its thickness is not known"
@@ -60,7 +61,10 @@ def lowest(rgb: Float64) -> Float64:
 
 
 def mean_luminance(light: Float64, weight: Float64) -> float:
-    """Mean relative luminance, 0 black to 1 the display's white (Nagai et al. 2013)."""
+    """Mean relative luminance, 0 black to 1 the display's white: how light the object is, no sign of translucency.
+
+    Nagai et al. (2013) found that translucency goes by luminance in some regions, not over the whole object.
+    """
     return mean(light, weight)
 
 
@@ -68,6 +72,7 @@ def rms_contrast(light: Float64, weight: Float64) -> float:
     """sqrt(mean((L - m)^2)) / m, m the mean luminance: Moulden, Kingdom & Gatley 1990, relative to the mean.
 
     Michelson's contrast is of two pixels only, the brightest and the darkest; Peli (1990) on why that does not do.
+    Over a whole picture it did not go along with translucency in Nagai et al. (2013).
     """
     middle, deviation = central(light, weight)
     if middle == 0:
@@ -87,11 +92,12 @@ def luminance_skew(light: Float64, weight: Float64) -> float:
 def saturation_intensity_correlation(rgb: Float64, weight: Float64) -> float:
     """Pearson's correlation, over the object, of saturation and intensity: Fleming & Buelthoff 2005.
 
-    rgb (3, N). Intensity I = (R + G + B) / 3, saturation S = 1 - min(R, G, B) / I; black pixels have no saturation and
-    do not count. Above 0 the object glows warm where it is bright, below 0 it looks icy.
+    rgb (3, N). Intensity I = (R + G + B) / 3, saturation S = 1 - min(R, G, B) / I; pixels that are black on the
+    display, every channel below `DARKEST`, have no saturation and do not count. Above 0 the object glows warm where it
+    is bright, below 0 it looks icy.
     """
     channels = rgb[0] + rgb[1] + rgb[2]
-    weight = np.where(channels > 0, weight, 0.0)
+    weight = np.where(np.maximum(np.maximum(rgb[0], rgb[1]), rgb[2]) >= DARKEST, weight, 0.0)
     if weight.size and not weight.any():
         raise NoCue("the object is black, which has no saturation")
     saturation = 1 - 3 * np.divide(lowest(rgb), channels, out=np.zeros_like(channels), where=channels > 0)

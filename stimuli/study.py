@@ -18,6 +18,8 @@ from fakesss.scene import Scene, check_path, read_toml
 
 Level = str | bool | int | float | tuple[float | int, ...]
 MUST_BE = "must be a finite number, true or false, a word, or a list of numbers"
+ONE_SIZE = "all pictures of a study have one size; set it in [scene]"  # on screen, and for the cues that count pixels
+FORMULA = tuple("=+-@\t\r")
 
 
 def is_number(value: Any) -> bool:
@@ -94,8 +96,14 @@ class Control(Strict):
         where = f"study.toml: control {written(self.label)}"
         if not self.changes:
             raise BadInput(f"{where}: sets nothing; name a field, for example set = {{ material.backlight = 0 }}")
+        paths = [path for path, _ in leaves(self.set)]
+        twice = next((path for path in paths if paths.count(path) > 1), None)
+        if twice is not None:
+            raise BadInput(f"{where}: {twice} stands twice; remove one")
         for path, value in self.changes.items():
             check_path(path, where, len(base.lights))
+            if path == "size":
+                raise BadInput(f"{where}: size = {written(value)}: {ONE_SIZE}")
             if not is_level(value):
                 raise BadInput(f"{where}: {path} = {written(value)}: {MUST_BE}")
         return base.replace(self.changes, where)
@@ -131,17 +139,18 @@ class Study(Strict):
 
     @model_validator(mode="after")
     def _names_are_unique(self) -> Self:
-        for what, names in (
-            ("factor name", [factor.name for factor in self.factor]),
-            ("factor path", [factor.path for factor in self.factor]),
-            ("control label", [control.label for control in self.control]),
-        ):
-            twice = {name for name in names if names.count(name) > 1}
+        names = {"factor name": [factor.name for factor in self.factor]}
+        names["factor path"] = [factor.path for factor in self.factor]
+        names["control label"] = [control.label for control in self.control]
+        for what, given in names.items():
+            twice = {name for name in given if given.count(name) > 1}
             if twice:
                 raise ValueError(f'{what} "{sorted(twice)[0]}" is used twice; give each its own')
-        spreadsheet = next((f.name for f in self.factor if f.name[0] in "=+-@\t\r"), None)
-        if spreadsheet is not None:
-            raise ValueError(f'factor name "{spreadsheet}" would be a formula in a spreadsheet; begin it with a letter')
+        names["compare label"] = [entry.label or entry.image for entry in self.compare]
+        for what, given in names.items():
+            formula = next((name for name in given if name.startswith(FORMULA)), None)
+            if formula is not None:
+                raise ValueError(f'{what} "{formula}" would be a formula in a spreadsheet; begin it with a letter')
         if not (self.factor or self.compare or self.control):
             raise ValueError("nothing to show: add a [[factor]] or a [[compare]] picture")
         return self
@@ -185,6 +194,8 @@ def check_factor(factor: Factor, base: Scene, source: str) -> None:
     """Every level of `factor` gives a valid scene, or `BadInput` naming factor, level and mend."""
     where = f'{source}: factor "{factor.name}"'
     check_path(factor.path, where, len(base.lights))
+    if factor.path == "size":
+        raise BadInput(f'{where}: path "size": {ONE_SIZE}')
     seen: list[Any] = []
     for level in factor.levels:
         place = f"{where}: level {written(level)}"

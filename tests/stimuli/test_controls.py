@@ -65,7 +65,19 @@ def test_controls_are_drawn_by_lot_for_repeats_like_others(tmp_path: Path) -> No
         ('label = "a"\nset.material = {}', 'study.toml: control "a": sets nothing'),
         ('label = "a"\nset = 1', "study.toml: control[1].set: 1: must be"),
         ("set.exposure = 1", "study.toml: control[1].label: is missing; add it"),
-        ('label = ""\nset.exposure = 1', "study.toml: control[1].label: '': "),
+        ('label = ""\nset.exposure = 1', "study.toml: control[1].label: '': must not be empty; write a word"),
+        (
+            'label = "=x"\nset.exposure = 1',
+            'control label "=x" would be a formula in a spreadsheet; begin it with a letter',
+        ),
+        (
+            'label = "a"\nset.size = [20, 20]',
+            'study.toml: control "a": size = [20, 20]: all pictures of a study have one size; set it in [scene]',
+        ),
+        (
+            'label = "a"\nset = { material.backlight = 0, "material.backlight" = 1 }',
+            'study.toml: control "a": material.backlight stands twice; remove one',
+        ),
         ('label = "a"\nlevels = [1]\nset.exposure = 1', "study.toml: control[1].levels: unknown key"),
         (
             'label = "a"\nset.exposure = 1\n[[control]]\nlabel = "a"\nset.exposure = 2',
@@ -78,6 +90,21 @@ def test_bad_controls_get_one_sentence(tmp_path: Path, text: str, sentence: str)
         load(tmp_path, f'title = "x"\n{FACTOR}[[control]]\n{text}\n')
     assert sentence in str(caught.value)
     assert "\n" not in str(caught.value)
+
+
+def test_a_label_of_a_picture_made_elsewhere_is_no_formula_either(tmp_path: Path) -> None:
+    with pytest.raises(
+        BadInput, match='compare label "@x" would be a formula in a spreadsheet; begin it with a letter'
+    ):
+        load(tmp_path, 'title = "x"\n[[compare]]\nimage = "a.png"\nlabel = "@x"\n')
+
+
+def test_the_size_of_pictures_is_no_factor(tmp_path: Path) -> None:
+    with pytest.raises(BadInput) as caught:
+        load(tmp_path, 'title = "x"\n[[factor]]\nname = "big"\npath = "size"\nlevels = [[64, 64], [128, 128]]\n')
+    assert str(caught.value) == (
+        'study.toml: factor "big": path "size": all pictures of a study have one size; set it in [scene]'
+    )
 
 
 def test_an_object_that_is_not_there_is_looked_for_in_the_control(tmp_path: Path) -> None:

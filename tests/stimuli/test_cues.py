@@ -103,6 +103,25 @@ def test_black_pixels_have_no_saturation() -> None:
     assert with_black == pytest.approx(saturation_intensity_correlation(rgb[:, 1:], np.ones(2)))
 
 
+def test_what_the_display_shows_as_black_has_no_saturation() -> None:
+    """A fifth of the object is a red of 1e-7, below the first code value: no eye sees that it is saturated."""
+    ramp = np.linspace(0.1, 0.5, 80)
+    glow = np.array([ramp, ramp * 0.8, ramp * (0.8 - ramp)])
+    unseen = np.zeros((3, 20))
+    unseen[0] = 1e-7
+    alone = saturation_intensity_correlation(glow, np.ones(80))
+    assert alone > 0.9
+    assert saturation_intensity_correlation(np.hstack([glow, unseen]), np.ones(100)) == alone
+    with pytest.raises(NoCue, match="the object is black"):
+        saturation_intensity_correlation(unseen, np.ones(20))
+
+
+def test_the_first_code_value_of_a_picture_made_elsewhere_is_seen() -> None:
+    """Two greys and a red of code value 1: the darkest light that 8 bits can say."""
+    pixels = np.array([[[120, 120, 120], [60, 60, 60], [1, 0, 0]]], np.uint8)
+    assert cues_of_picture(pixels).values["saturation_intensity_correlation"] is not None
+
+
 def test_highlights_are_bright_in_every_channel_and_left_out_of_the_rest() -> None:
     glow, dull, spot = [0.9, 0.6, 0.2], [0.3, 0.2, 0.1], [1.4, 1.2, 0.9]
     found = values(whole([[glow, dull, glow, dull, spot]]))
