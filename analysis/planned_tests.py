@@ -138,6 +138,6 @@ def equivalence_tests(design: RowDesign, plan: AnalysisPlan) -> Iterator[Planned
             kind="equivalence",
             p=partial(design.equivalence_p, pair, margin),
             alpha=plan.equivalence.alpha,
-            difference=None if design.best in pair else abs(design.means[pair[0]] - design.means[pair[1]]),
+            difference=None if design.best in pair else abs(design.plain_means[pair[0]] - design.plain_means[pair[1]]),
             margin=margin,
         )

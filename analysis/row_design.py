@@ -1,7 +1,7 @@
 """A row of the report as places among the pictures: its tests for thousands of simulated studies at once."""
 
 from collections import Counter
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
@@ -12,7 +12,13 @@ from scipy.linalg import helmert
 from analysis.labels import natural_order
 from analysis.plan import BEST, AnalysisPlan, Mode
 from analysis.rows import Level, Row, declared
-from analysis.statistics.batches import Moments, equivalence_p, independent_p, repeated_p
+from analysis.statistics.batches import (
+    Moments,
+    independent_p,
+    paired_equivalence_p,
+    repeated_p,
+    welch_equivalence_p,
+)
 from analysis.statistics.undefined import Floats
 from analysis.study import StudyInfo
 
@@ -24,8 +30,9 @@ class RowDesign:
     """Which pictures make the samples of a row.
 
     `places`: of each sample's pictures, in the manifest's order; `shares`: their weights in a person's mean. `means`:
-    expected answer of each sample. `best`: which sample is the own picture with the highest mean, picked anew in each
-    study from `own`; None if none is. `pictures`: how many there are in all.
+    expected answer of each sample; `plain_means`: with pictures that weigh alike, as tests of equivalence have them.
+    `best`: which sample is the own picture with the highest mean, picked anew in each study from `own`; None if none
+    is. `pictures`: how many there are in all.
     """
 
     row: Row
@@ -33,6 +40,7 @@ class RowDesign:
     places: tuple[tuple[int, ...], ...]
     shares: tuple[tuple[float, ...], ...]
     means: tuple[float, ...]
+    plain_means: tuple[float, ...]
     best: int | None
     own: tuple[int, ...]
     pictures: int
@@ -44,12 +52,15 @@ class RowDesign:
         compared = {(each.name, each.question): each for each in declared(study, plan, [row.question], set(means))}
         stimuli = compared[row.name, row.question].stimuli if row.kind == "comparison" else ()
         own = [picture.id for picture in study.pictures if picture.role == "factor"]
+        plain = [{name: 1 / len(level.stimuli) for name in level.stimuli} for level in row.levels]
+        weights = [shares(row, level) for level in row.levels] if mode == "repeated" else plain
         return cls(
             row=row,
             mode=mode,
             places=tuple(tuple(place[stimulus] for stimulus in level.stimuli) for level in row.levels),
-            shares=tuple(tuple(shares(row, level).values()) for level in row.levels),
-            means=tuple(sum(share * means[name] for name, share in shares(row, level).items()) for level in row.levels),
+            shares=tuple(tuple(of_sample.values()) for of_sample in weights),
+            means=tuple(weighted(means, of_sample) for of_sample in weights),
+            plain_means=tuple(weighted(means, of_sample) for of_sample in plain),
             best=stimuli.index(BEST) if BEST in stimuli else None,
             own=tuple(place[str(name)] for name in natural_order(own)),
             pictures=len(study.pictures),
@@ -77,22 +88,29 @@ class RowDesign:
             return self.left_out(pictures, repeated_p(self.samples(pictures), contrasts))
         if self.best is None:
             return independent_p(pictures, self.places)
-        alone = tuple((index,) for index in range(len(self.places)))
-        return self.left_out(pictures, independent_p(self.samples(pictures), alone))
+        return self.left_out(pictures, independent_p(self.samples(pictures), self.alone))
 
     def equivalence_p(self, pair: tuple[int, int], margin: float, pictures: Moments) -> Floats:
-        """p of the equivalence of two samples in each study."""
-        samples = self.samples(pictures).chosen(np.tile(pair, (len(pictures.mean), 1)))
-        return self.left_out(pictures, equivalence_p(samples, margin, paired=self.mode == "repeated"))
+        """p of the equivalence of two samples in each study, whose pictures weigh alike (`margins.judge_row`)."""
+        compared, places = pictures, self.places
+        if self.best is not None:
+            compared, places = self.samples(pictures), self.alone
+        a, b = (places[index] for index in pair)
+        if self.mode == "independent":
+            return self.left_out(pictures, welch_equivalence_p(compared, a, b, margin))
+        weights = columns((a, b), [(1 / len(each),) * len(each) for each in (a, b)], compared.mean.shape[1])
+        return self.left_out(pictures, paired_equivalence_p(compared.combined(weights), margin))
+
+    @property
+    def alone(self) -> tuple[tuple[int, ...], ...]:
+        """Places among the samples, each by itself."""
+        return tuple((index,) for index in range(len(self.places)))
 
     def samples(self, pictures: Moments) -> Moments:
         """Of the row's samples; of several pictures each person's mean."""
         if self.best is not None:
             return pictures.chosen(self.picked(pictures))
-        weights = np.zeros((self.pictures, len(self.places)))
-        for sample, places in enumerate(self.places):
-            weights[list(places), sample] = self.shares[sample]
-        return pictures.combined(weights)
+        return pictures.combined(columns(self.places, self.shares, self.pictures))
 
     def picked(self, pictures: Moments) -> Places:
         """(studies, samples): the pictures compared; of equal means the first in natural order is the best."""
@@ -110,6 +128,19 @@ class RowDesign:
         samples = self.picked(pictures)
         named = np.delete(samples, self.best, axis=1)
         return np.where((named == samples[:, [self.best]]).any(axis=1), np.nan, p)
+
+
+def columns(places: Sequence[Sequence[int]], weights: Sequence[Sequence[float]], pictures: int) -> Floats:
+    """pictures x samples: the weights of the pictures at `places` of each sample, 0 elsewhere."""
+    matrix = np.zeros((pictures, len(places)))
+    for sample, mine in enumerate(places):
+        matrix[list(mine), sample] = weights[sample]
+    return matrix
+
+
+def weighted(means: Mapping[str, float], weights: Mapping[str, float]) -> float:
+    """The weighted sum of pictures' means."""
+    return sum(weight * means[name] for name, weight in weights.items())
 
 
 def shares(row: Row, level: Level) -> dict[str, float]:

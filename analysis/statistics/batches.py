@@ -92,17 +92,33 @@ def sample_of(pictures: Moments, places: list[int]) -> tuple[Floats, Floats, Flo
     return np.full(len(means), float(n * len(places))), mean, squares
 
 
-def equivalence_p(pair: Moments, margin: float, paired: bool) -> Floats:
-    """The larger p of two one-sided t tests of a difference within (-margin, margin), (studies,); NaN without spread.
+def paired_equivalence_p(pair: Moments, margin: float) -> Floats:
+    """The larger p of two one-sided paired t tests of a difference within (-margin, margin), (studies,).
 
-    `pair`: moments of two samples; not `paired`: Welch's. Agrees with `Equivalence`.
+    `pair`: moments of two samples. NaN where everybody's difference is the same. Agrees with `Equivalence`.
     """
-    n = pair.people
-    difference = np.abs(pair.mean[:, 0] - pair.mean[:, 1])
     a, b = pair.covariance[:, 0, 0], pair.covariance[:, 1, 1]
-    variance = a + b - 2 * pair.covariance[:, 0, 1] if paired else a + b
-    with np.errstate(invalid="ignore", divide="ignore"):
-        df = n - 1 if paired else (n - 1) * (a + b) ** 2 / (a**2 + b**2)
-        # the test against the nearer margin has the larger p
-        p = special.stdtr(df, (difference - margin) / np.sqrt(variance / n))
+    variance = a + b - 2 * pair.covariance[:, 0, 1]
+    p = larger_p(pair.mean[:, 0] - pair.mean[:, 1], margin, variance / pair.people, pair.people - 1)
     return np.where(variance <= ROUNDING * (a + b), np.nan, p)
+
+
+def welch_equivalence_p(pictures: Moments, a: tuple[int, ...], b: tuple[int, ...], margin: float) -> Floats:
+    """As `paired_equivalence_p`, by Welch's t tests of two independent samples.
+
+    `a`, `b`: places of the samples among `pictures`, whose answers are pooled. NaN where nothing varies inside them.
+    Agrees with `Equivalence` without a subject.
+    """
+    (n_a, mean_a, squares_a), (n_b, mean_b, squares_b) = (sample_of(pictures, list(places)) for places in (a, b))
+    error_a, error_b = squares_a / (n_a - 1) / n_a, squares_b / (n_b - 1) / n_b
+    error = error_a + error_b
+    with np.errstate(invalid="ignore", divide="ignore"):
+        df = error**2 / (error_a**2 / (n_a - 1) + error_b**2 / (n_b - 1))
+    return np.where(error <= 0, np.nan, larger_p(mean_a - mean_b, margin, error, df))
+
+
+def larger_p(difference: Floats, margin: float, error: Floats, df: Floats | int) -> Floats:
+    """Of two one-sided t tests: the one against the nearer margin. `error`: the difference's variance."""
+    with np.errstate(invalid="ignore", divide="ignore"):
+        p: Floats = special.stdtr(df, (np.abs(difference) - margin) / np.sqrt(error))
+    return p

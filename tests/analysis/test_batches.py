@@ -6,7 +6,13 @@ import pytest
 from scipy.linalg import helmert
 
 from analysis.statistics.anova import OneWayAnova, RepeatedMeasuresAnova
-from analysis.statistics.batches import Moments, equivalence_p, independent_p, repeated_p
+from analysis.statistics.batches import (
+    Moments,
+    independent_p,
+    paired_equivalence_p,
+    repeated_p,
+    welch_equivalence_p,
+)
 from analysis.statistics.equivalence import Equivalence
 from analysis.statistics.undefined import Floats, Undefined
 
@@ -56,15 +62,30 @@ def test_independent_samples_of_one_and_several_pictures(people: int) -> None:
 @pytest.mark.parametrize("people", [3, 44])
 def test_equivalence(people: int, paired: bool) -> None:
     answers = likert(people, 2)
-    found = equivalence_p(Moments.of(answers), 0.5, paired)
+    moments = Moments.of(answers)
+    found = paired_equivalence_p(moments, 0.5) if paired else welch_equivalence_p(moments, (0,), (1,), 0.5)
     for study in range(STUDIES):
-        statistic = Equivalence("answer", "sample", "person" if paired else None, margin=0.5)
-        try:
-            table = statistic(long_frame(answers[:, study]))
-        except Undefined:
-            assert np.isnan(found[study])
-        else:
-            assert found[study] == pytest.approx(table["p_equivalence"].iloc[0], rel=1e-9)
+        expect_equivalence(found[study], long_frame(answers[:, study]), "person" if paired else None)
+
+
+@pytest.mark.parametrize("people", [2, 20])
+def test_equivalence_of_independent_samples_of_several_pictures(people: int) -> None:
+    """Answers are pooled, and samples differ in size and spread."""
+    answers = likert(people, 5)
+    found = welch_equivalence_p(Moments.of(answers), (4, 0), (1, 3, 2), 0.5)
+    for study in range(STUDIES):
+        parts = [(0, answers[:, study, [4, 0]].ravel()), (1, answers[:, study, [1, 3, 2]].ravel())]
+        frame = pd.concat([pd.DataFrame({"sample": index, "answer": part}) for index, part in parts])
+        expect_equivalence(found[study], frame, None)
+
+
+def expect_equivalence(p: float, frame: pd.DataFrame, subject: str | None) -> None:
+    try:
+        table = Equivalence("answer", "sample", subject, margin=0.5)(frame)
+    except Undefined:
+        assert np.isnan(p)
+    else:
+        assert p == pytest.approx(table["p_equivalence"].iloc[0], rel=1e-9)
 
 
 def test_effects_by_contrasts_and_averaged_levels() -> None:
@@ -99,6 +120,7 @@ def test_what_has_no_value_is_nan() -> None:
     shifted = np.arange(5.0)[:, None, None] + np.array([0.0, 1.0, 2.0])
     for answers in (equal, shifted):
         assert np.isnan(repeated_p(Moments.of(answers))).all()
-        assert np.isnan(equivalence_p(Moments.of(answers[..., :2]), 0.5, paired=True)).all()
+        assert np.isnan(paired_equivalence_p(Moments.of(answers[..., :2]), 0.5)).all()
     assert np.isnan(independent_p(Moments.of(equal), ((0,), (1,)))).all()
+    assert np.isnan(welch_equivalence_p(Moments.of(equal), (0,), (1,), 0.5)).all()
     assert np.isnan(independent_p(Moments.of(equal + np.arange(3.0)), ((0,), (1,)))).all()

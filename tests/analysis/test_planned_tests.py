@@ -154,15 +154,16 @@ def test_independent_samples(tmp_path: Path) -> None:
 
 
 def test_a_factorial_with_its_interaction(tmp_path: Path) -> None:
-    study = factorial(tmp_path, alpha=0.3)
+    study = factorial(tmp_path, alpha=0.3, equivalence={"margin": 1.5})
     titles = check(study, reported(study, "repeated"))
-    assert len(titles) == 9
+    assert len(titles) == 9 + 3 * (1 + 3)
     assert titles[6] == "Translucent vs thickness exponent × backlight"
 
 
 def test_a_factorial_between_people_has_no_interactions(tmp_path: Path) -> None:
-    study = factorial(tmp_path, mode="independent")
-    assert len(check(study, reported(study, "independent"))) == 6
+    """Its levels' answers are pooled: each picture of a level has people of its own."""
+    study = factorial(tmp_path, mode="independent", equivalence={"margin": 1.5})
+    assert len(check(study, reported(study, "independent"))) == 6 + 3 * (1 + 3)
     assert simulation_of(study, "independent")[1] == [BETWEEN]
 
 
@@ -175,8 +176,11 @@ def test_expected_differences(tmp_path: Path) -> None:
     assert found["Translucent vs thickness exponent"] == pytest.approx(0.2)
     assert found["Translucent vs backlight"] == pytest.approx(0.3)
     assert found["Translucent vs thickness exponent × backlight"] == pytest.approx(0.6 * 0.5 * 2 / 3)
-    assert found["Translucent vs backlight: 1.2 like 0.8"] == pytest.approx(0.3)
+    assert found["Translucent vs backlight: 1.2 like 0.8"] == pytest.approx(0.2)  # of three pictures that weigh alike
     assert found["Translucent vs backlight: 0.8 like 1.6"] == pytest.approx(0.0)
+    tests, _ = planned_tests(study, study.plan, "independent", dict.fromkeys(QUESTIONS, means | {"img04": 4.6}))
+    found = {test.title: test.difference for test in tests if test.question == "translucent"}
+    assert found["Translucent vs backlight"] == pytest.approx(0.2)
 
 
 def test_what_chance_picks_has_no_expected_difference(tmp_path: Path) -> None:

@@ -11,7 +11,7 @@ from statsmodels.stats.power import FTestAnovaPower, TTestPower
 from analysis.planned_tests import PlannedTest
 from analysis.power import Bracket, Draw, Search, Simulation
 from analysis.power_table import as_frame, as_text, found_rows
-from analysis.statistics.batches import Moments, equivalence_p, independent_p, repeated_p
+from analysis.statistics.batches import Moments, independent_p, paired_equivalence_p, repeated_p
 from analysis.statistics.undefined import Floats
 
 STUDIES = 4000
@@ -88,7 +88,7 @@ THESIS_DEVIATION = 0.53 * 44**0.5 / stats.t.isf(0.05, 43)  # the 90% interval of
 
 @pytest.mark.parametrize(("people", "difference"), [(44, 0.0), (151, 0.0), (151, 0.2)])
 def test_equivalence_by_the_exact_power_of_two_one_sided_tests(people: int, difference: float) -> None:
-    test = planned(lambda moments: equivalence_p(moments, 0.5, paired=True), difference, margin=0.5)
+    test = planned(lambda moments: paired_equivalence_p(moments, 0.5), difference, margin=0.5)
     draw = normal([0, difference], person=1.0, noise=THESIS_DEVIATION / 2**0.5)
     expect(test, draw, 2, people, tost_power(people, difference, THESIS_DEVIATION, 0.5, 0.05))
 
@@ -96,7 +96,7 @@ def test_equivalence_by_the_exact_power_of_two_one_sided_tests(people: int, diff
 def test_the_thesis_needed_about_151_people_to_show_that_pictures_are_alike() -> None:
     exact = next(people for people in range(140, 160) if tost_power(people, 0, THESIS_DEVIATION, 0.5, 0.05) >= 0.8)
     assert exact == 152  # docs/equivalence.md: 149 to 154 by what the printed HSD leaves open
-    test = planned(lambda moments: equivalence_p(moments, 0.5, paired=True), 0.0, margin=0.5)
+    test = planned(lambda moments: paired_equivalence_p(moments, 0.5), 0.0, margin=0.5)
     search = Search(simulated(test, normal([0, 0], noise=THESIS_DEVIATION / 2**0.5), 2), 0.8, 1000)
     search.run()
     row = found_rows(search, (), 0.86)[0]
