@@ -101,6 +101,7 @@ def choose_columns(header: list[str], columns: Mapping[str, str], path: Path, wi
         if theirs not in header:
             raise BadInput(f'{path}: no column "{theirs}" (wanted as {ours}); {nearest(theirs, header)}')
         chosen[ours] = theirs
+    refuse_two_roles(chosen, melted, path)
     for ours in (name for name in (*REQUIRED, *OPTIONAL) if name not in (*chosen, *melted)):
         found = next((by_plain[alias] for alias in ALIASES.get(ours, (ours,)) if alias in by_plain), None)
         if found is not None and found not in chosen.values():
@@ -114,6 +115,17 @@ def choose_columns(header: list[str], columns: Mapping[str, str], path: Path, wi
     return chosen
 
 
+def refuse_two_roles(chosen: Mapping[str, str], melted: tuple[str, ...], path: Path) -> None:
+    """`BadInput` for a column named as two of ours, and for one that a wide file has in its columns of pictures."""
+    roles = list(chosen)
+    for place, ours in enumerate(roles):
+        if ours in melted and ours != "question":
+            raise BadInput(f"{path}: the columns of --wide hold picture and rating; leave --column {ours} out")
+        other = next((name for name in roles[:place] if chosen[name] == chosen[ours]), None)
+        if other is not None:
+            raise BadInput(f'{path}: column "{chosen[ours]}" cannot be both {other} and {ours}; name another for one')
+
+
 def plain(name: str) -> str:
     """A column's name without regard to case, spaces and hyphens."""
     return re.sub(r"[\s-]+", "_", name.strip().lower())
@@ -122,6 +134,9 @@ def plain(name: str) -> str:
 def wide_columns(header: list[str], wide: str, path: Path, chosen: Mapping[str, str]) -> dict[str, dict[str, str]]:
     """Column -> the picture (and question) that its name says, of every column of the form `wide`."""
     pieces = re.split(r"(\*|\{stimulus\}|\{question\})", wide)
+    twice = next((piece for piece in ("{stimulus}", "{question}") if pieces.count(piece) > 1), None)
+    if twice is not None:
+        raise BadInput(f'columns: {twice} stands twice in --wide "{wide}"; a column\'s name says it once')
     groups = {"*": ".*", "{stimulus}": "(?P<stimulus>.+)", "{question}": "(?P<question>.+)"}
     form = re.compile("".join(groups.get(piece, re.escape(piece)) for piece in pieces))
     names = [name for name in header if name not in chosen.values()]

@@ -2,12 +2,13 @@
 
 import math
 import tomllib
-from collections.abc import Mapping
+from collections.abc import Collection, Mapping
 from pathlib import Path
 from typing import Annotated, Any, Literal
 
 from pydantic import Field, model_validator
 
+from analysis.ratings import DEFAULT_SCALE
 from fakesss.problem import BadInput, Strict, nearest, validated
 
 Mode = Literal["repeated", "independent"]
@@ -135,17 +136,19 @@ def read_plan(path: Path) -> AnalysisPlan:
     return check_analysis(table, str(path))
 
 
-def check_analysis(study_table: Mapping[str, Any], source: str) -> AnalysisPlan:
+def check_analysis(study_table: Mapping[str, Any], source: str, pictures: Collection[str] = ()) -> AnalysisPlan:
     """The plan in a study's `[analysis]` table (defaults where there is none).
 
-    `study_table` is study.toml as read; `source` names it in messages. Raises `BadInput` for an unknown key, a value
-    out of range, or a comparison on a question that the study does not ask.
+    `study_table` is study.toml as read; `source` names it in messages; `pictures` are the study's, where they are
+    known. Raises `BadInput` for an unknown key, a value out of range, a question that the study does not ask, or a
+    picture that it does not have.
     """
     table = study_table.get("analysis", {})
     if not isinstance(table, Mapping):
         raise BadInput(f"{source}: analysis: must be a table; write [analysis]")
     plan = validated(AnalysisPlan, table, f"{source}: [analysis]")
-    asked = [str(entry["name"]) for entry in study_table.get("question", []) if "name" in entry]
+    questions = [entry for entry in study_table.get("question", []) if "name" in entry]
+    asked = [str(entry["name"]) for entry in questions]
     named = [(f'comparison "{entry.name}"', entry.question) for entry in plan.comparison]
     named += [(f'contrast "{entry.name}"', entry.question) for entry in plan.contrast]
     if plan.equivalence is not None and isinstance(plan.equivalence.margin, dict):
@@ -155,4 +158,35 @@ def check_analysis(study_table: Mapping[str, Any], source: str) -> AnalysisPlan:
             raise BadInput(
                 f'{source}: [analysis] {where}: question "{question}" is not asked; {nearest(question, asked)}'
             )
+    refuse_margins(plan, {str(each["name"]): each.get("scale", DEFAULT_SCALE) for each in questions}, source)
+    if pictures:
+        refuse_unknown_pictures(plan, pictures, source)
     return plan
+
+
+def refuse_margins(plan: AnalysisPlan, scales: Mapping[str, int | None], source: str) -> None:
+    """`BadInput` for a margin that no difference on its question's scale (name -> highest answer) can exceed."""
+    for question, scale in scales.items():
+        margin = None if plan.equivalence is None else plan.equivalence.margin_of(question)
+        if margin is not None and scale is not None and margin >= scale - 1:
+            raise BadInput(
+                f"{source}: [analysis] equivalence.margin: {margin:g}: must be below {scale - 1}, the length of the "
+                f"scale 1 to {scale} of {question}"
+            )
+
+
+def refuse_unknown_pictures(plan: AnalysisPlan, pictures: Collection[str], source: str) -> None:
+    """`BadInput` for the first picture of a comparison or a contrast that the study does not have."""
+    named = [(f'comparison "{each.name}"', name) for each in plan.comparison for name in each.stimuli if name != BEST]
+    named += [(f'contrast "{each.name}"', name) for each in plan.contrast for name in each.weights]
+    for where, name in named:
+        if name not in pictures:
+            known = nearest(name, pictures)
+            raise BadInput(f'{source}: [analysis] {where}: the study has no picture "{name}"; {known}')
+
+
+def margins_not_asked(plan: AnalysisPlan, asked: Collection[str]) -> list[str]:
+    """A sentence for each margin of a question that ratings from elsewhere do not answer."""
+    margin = None if plan.equivalence is None else plan.equivalence.margin
+    strangers = [name for name in margin if name not in asked] if isinstance(margin, dict) else []
+    return [f'equivalence margin: question "{name}" is not asked; {nearest(name, asked)}' for name in strangers]

@@ -15,6 +15,8 @@ MEASURED = ("rt_ms", "focus_lost_ms")
 LABELS = ("participant", "session", "stimulus", "question", "repeat_of")
 GUARD = r"^'(?=[=+\-@\t\r])"  # the export's apostrophe before what a spreadsheet would run as a formula
 DEFAULT_SCALE = 7
+MOST_ANSWERS = 1000  # of a scale counted answer by answer; finer ones are read as any number
+SMALLEST, LARGEST = 1e-50, 1e50  # sizes of a number whose square of squares float64 still holds
 MODES = ("live", "simulated", "pilot")
 
 
@@ -36,6 +38,8 @@ def read_ratings(
     the line number of the first bad row.
     """
     path = Path(path)
+    if isinstance(scale, int):
+        refuse_scale(scale, f"scale: {scale}")
     frame = read_cells(path, columns or {}, wide, question)
     if frame.empty:
         raise BadInput(f"{path}: has a header but no ratings; export again after people have answered")
@@ -64,6 +68,12 @@ def of_distinct(column: "pd.Series[str]", change: Callable[["pd.Series[str]"], "
     codes, distinct = pd.factorize(column)
     changed = change(pd.Series(distinct, dtype=column.dtype))
     return pd.Series(changed.array.take(codes), index=column.index, name=column.name)
+
+
+def refuse_scale(highest: int, where: str) -> None:
+    """`BadInput` for a scale that is none, or whose answers are too many to be told one by one."""
+    if not 2 <= highest <= MOST_ANSWERS:
+        raise BadInput(f"{where}: must be a whole number from 2 to {MOST_ANSWERS}, or none for any number")
 
 
 def refuse_empty_labels(frame: pd.DataFrame, path: Path) -> None:
@@ -97,10 +107,13 @@ def numeric_ratings(
     else:
         highest = frame["question"].map(dict(scale)).astype(float).fillna(np.inf)
     off_scale = np.isfinite(highest) & value.notna() & ((value < 1) | (value > highest) | (value != value.round()))
+    size = value.abs()
+    off_scale |= ((size < SMALLEST) & (size > 0)) | (size > LARGEST)
     bad = np.flatnonzero(unreadable | off_scale)
     if len(bad):
         first, top = bad[0], highest.iloc[bad[0]]
-        must = f"a whole number from 1 to {top:g}" if np.isfinite(top) else "a finite number"
+        free = f"0 or a finite number of a size from {SMALLEST:g} to {LARGEST:g}"
+        must = f"a whole number from 1 to {top:g}" if np.isfinite(top) else free
         other = "; another scale is named by --scale" if isinstance(scale, int) and np.asarray(off_scale)[first] else ""
         raise BadInput(
             f'{path}: line {frame.index[first] + 2}: rating "{text.iloc[first]}": must be {must}, or empty if it is '

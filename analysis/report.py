@@ -12,13 +12,15 @@ from analysis.figures.style import letters_missing
 from analysis.files import plain, save
 from analysis.levels import from_ratings, read_levels
 from analysis.page import render_page, sections_of
-from analysis.plan import AnalysisPlan
+from analysis.plan import AnalysisPlan, margins_not_asked, refuse_margins
 from analysis.provenance import provenance
 from analysis.ratings import DEFAULT_SCALE, read_ratings
 from analysis.remarks import remarks
 from analysis.sample import Sample, draw_sample
 from analysis.study import StudyInfo, read_manifest
 from fakesss.problem import BadInput
+
+FINE, COARSE = 0.2, 1e13  # span below which two decimals hide differences; size beyond which float64 has no decimals
 
 
 def write_report(
@@ -57,11 +59,13 @@ def write_report(
     )  # fmt: skip
     refuse_strangers(study, frame, ratings)
     plan = plan or study.plan
+    refuse_margins(plan, {q.name: q.scale for q in study.questions}, "plan")
     sample = draw_sample(frame[frame["question"].isin([q.name for q in study.questions])], plan, participants)
     evidence = gather(study, plan, sample, frame, progress)
     sections = sections_of(evidence)
     drawings = [drawing for section in sections for drawing in section.drawings]
-    notes = [*evidence.notes, *(sentence for section in sections for sentence in section.warnings)]
+    slips = [*margins_not_asked(plan, [q.name for q in study.questions]), *decimals_lost(study, sample.ratings)]
+    notes = [*slips, *evidence.notes, *(sentence for section in sections for sentence in section.warnings)]
     said = [*remarks(study, plan, sample, frame, evidence.main, notes), *letters_missing(drawings)]
     tables = {name: without_zero_p(table) for section in sections for name, table in section.tables.items()}
     origin = provenance(ratings, frame, study, command or f"write_report({ratings.name})")
@@ -91,6 +95,20 @@ def results_json(
         "warnings": said,
         "session": origin,
     }
+
+
+def decimals_lost(study: StudyInfo, ratings: pd.DataFrame) -> list[str]:
+    """A sentence for each question on a free scale whose numbers the page's two decimals do not show."""
+    said = []
+    for question in study.questions:
+        given = ratings.loc[ratings["question"] == question.name, "rating"]
+        far, spread = given.abs().max(), given.max() - given.min()
+        if question.scale is None and (0 < spread < FINE or far > COARSE):
+            said.append(
+                f"Ratings of {question.name} lie from {given.min():.4g} to {given.max():.4g}, and the page prints two "
+                "decimals; multiply them by a power of ten, or read the numbers in the tables' files."
+            )
+    return said
 
 
 def without_zero_p(table: pd.DataFrame) -> pd.DataFrame:

@@ -1,5 +1,7 @@
 """Whose ratings are analysed: who started, who completed, who is left out and by which rule."""
 
+from collections import Counter
+from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -10,7 +12,7 @@ from analysis.plan import AnalysisPlan, Exclusions, Mode
 from analysis.quality import answer_times, answers, failed_checks, same_answer_share
 from analysis.ratings import is_first_showing, of_one_mode, unguarded
 from analysis.sessions import one_session_each
-from analysis.wording import counted
+from analysis.wording import counted, joined
 from fakesss.problem import BadInput
 
 FINISHED = ("completed", "complete", "finished", "true", "yes", "1")
@@ -79,8 +81,8 @@ def draw_sample(ratings: pd.DataFrame, plan: AnalysisPlan, participants: Path | 
     kept = answered[~answered["participant"].isin(list(order))]
     if kept.empty:
         raise BadInput(
-            f"ratings: {len(started)} started, {len(finished)} completed, and nobody is left to analyse; "
-            "wait for complete sessions, or set completers_only = false in [analysis]"
+            f"ratings: {len(started)} started, {len(finished)} completed, and nobody is left to analyse: "
+            f"{who_left_out(left_out)}"
         )
     return Sample(
         ratings=kept.reset_index(drop=True),
@@ -93,6 +95,17 @@ def draw_sample(ratings: pd.DataFrame, plan: AnalysisPlan, participants: Path | 
         mode=mode,
         n_missing=int(shown.loc[~shown["participant"].isin(list(order)), "rating"].isna().sum()),
     )
+
+
+def who_left_out(left_out: Sequence[LeftOut]) -> str:
+    """Which rules left how many out, and how to mend that."""
+    count = Counter(each.rule for each in left_out)
+    names = {rule: rule if rule in ("withdrew", "completers_only") else f"exclude.{rule}" for rule in count}
+    said = [f"{names[rule]} left out {n}" for rule, n in count.items()] or ["nobody gave an answer"]
+    mends = ["wait for complete sessions, or set completers_only = false in [analysis]"] * ("completers_only" in count)
+    declared = [name for name in names.values() if name.startswith("exclude.")]
+    mends += [f"loosen {joined(declared)} in [analysis]"] if declared else []
+    return "; ".join([joined(said), *(mends or ["wait for answers"])])
 
 
 def choose_mode(answered: pd.DataFrame, plan: AnalysisPlan) -> Mode:

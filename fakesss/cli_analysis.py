@@ -1,7 +1,7 @@
 """Commands about ratings: report."""
 
 import shlex
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
@@ -54,8 +54,8 @@ def report(study: Path | None, out: Path | None, database: str | None, pdf: bool
         results = report_study(study, out, database, mode_to_analyse(study, database), **options)
     else:
         reading = {
-            "columns": dict(halves(text, "column") for text in given["columns"]),
-            "factors": dict(halves(text, "factor") for text in given["factors"]),
+            "columns": all_halves(given["columns"], "column"),
+            "factors": all_halves(given["factors"], "factor"),
             "wide": given["wide"],
             "participants": given["participants"],
             **scale_in(given["scale"]),
@@ -104,6 +104,16 @@ def plan_in(path: Path | None) -> Any:
     return None if path is None else read_plan(path)
 
 
+def all_halves(texts: Sequence[str], option: str) -> dict[str, str]:
+    """Name -> column of an option that may be repeated, each name once."""
+    found: dict[str, str] = {}
+    for name, column in (halves(text, option) for text in texts):
+        if name in found:
+            raise BadInput(f"--{option} {name}: is given twice, as {found[name]} and as {column}; leave one out")
+        found[name] = column
+    return found
+
+
 def halves(text: str, option: str) -> tuple[str, str]:
     """NAME=COLUMN; a factor's column may have the factor's name."""
     name, equals, column = text.partition("=")
@@ -116,9 +126,13 @@ def scale_in(text: str | None) -> dict[str, int | None]:
     """The `scale` of `write_report`; nothing where none was named."""
     if text is None:
         return {}
-    if text != "none" and not (text.isdecimal() and int(text) >= 2):
-        raise BadInput(f'--scale "{text}": must be a whole number from 2, or none for any number')
-    return {"scale": None if text == "none" else int(text)}
+    if text == "none":
+        return {"scale": None}
+    from analysis.ratings import refuse_scale
+
+    scale = int(text) if text.isdecimal() and len(text) < 10 else 0
+    refuse_scale(scale, f'--scale "{text}"')
+    return {"scale": scale}
 
 
 def spoken(study: Path | None, given: Mapping[str, Any]) -> str:

@@ -177,7 +177,7 @@ def test_the_command_in_the_session_block_is_the_one_given(csv_of: Write, tmp_pa
         (("x", "--ratings", "y.csv", "--scale", "5"), "the study says each question's scale"),
         (("--ratings", "y.csv", "--column", "photo"), '--column "photo": must be OURS=THEIRS'),
         (("--ratings", "y.csv", "--factor", "=x"), '--factor "=x": must be NAME=COLUMN'),
-        (("--ratings", "y.csv", "--scale", "1"), '--scale "1": must be a whole number from 2, or none'),
+        (("--ratings", "y.csv", "--scale", "1"), '--scale "1": must be a whole number from 2 to 1000, or none'),
         (("--ratings", "y.csv", "--analysis", "no.toml"), "no.toml: no such file"),
         (("--ratings", "y.csv"), "y.csv: no such file; check the path"),
     ],
