@@ -7,31 +7,45 @@ import pandas as pd
 
 from analysis.plan import AnalysisPlan
 from analysis.results import Analysed
+from analysis.rows import Row
 from analysis.statistics.multiplicity import Adjusted
 
 NAMES = {"holm": "Holm", "fdr": "Benjamini–Hochberg"}
 
 
 def adjusted(found: Sequence[Analysed], plan: AnalysisPlan) -> tuple[Analysed, ...]:
-    """The rows with `p_holm` and `p_fdr`: main effects, interactions and comparisons alike."""
-    tests = [(each.p, each.row.question, each.row.name) for each in found]
-    table = pd.DataFrame(tests, columns=["p", "question", "factor"]).astype({"p": float})
-    family = None if plan.family == "all" else plan.family
+    """The rows with `p_holm` and `p_fdr`: main effects, interactions and declared comparisons alike."""
+    tests = [(each.p, family_of(each.row, plan)) for each in found]
+    table = pd.DataFrame(tests, columns=["p", "family"]).astype({"p": float})
     for method in ("holm", "fdr"):
-        table = Adjusted("p", method, family)(table)
+        table = Adjusted("p", method, "family")(table)
     return tuple(
         each if each.p is None else replace(each, p_holm=float(row["p_holm"]), p_fdr=float(row["p_fdr"]))
         for each, (_, row) in zip(found, table.iterrows(), strict=True)
     )
 
 
-def family_words(plan: AnalysisPlan, count: int) -> str:
+def family_of(row: Row, plan: AnalysisPlan) -> str:
+    """A name that the rows share whose p values are adjusted together."""
+    family = {"all": "all", "question": row.question, "factor": row.name}[plan.family]
+    return f"comparisons by themselves: {family}" if undeclared(row, plan) else f"declared: {family}"
+
+
+def undeclared(row: Row, plan: AnalysisPlan) -> bool:
+    """Whether the report adds this comparison by itself; such tests take nothing from those that were planned."""
+    return row.kind == "comparison" and not plan.comparison
+
+
+def family_words(plan: AnalysisPlan, found: Sequence[Analysed]) -> str:
     """all 10 tests; the tests of each question."""
-    return f"all {count} tests" if plan.family == "all" else f"the tests of each {plan.family}"
+    tested = [undeclared(each.row, plan) for each in found if each.p is not None]
+    added = sum(tested) if not all(tested) else 0
+    words = f"all {len(tested) - added} tests" if plan.family == "all" else f"the tests of each {plan.family}"
+    return f"{words}, comparisons that [analysis] does not declare among themselves" if added else words
 
 
-def deciding_words(plan: AnalysisPlan, count: int) -> str:
+def deciding_words(plan: AnalysisPlan, found: Sequence[Analysed]) -> str:
     """Which p decides: how it is adjusted, and over which tests."""
     if plan.adjust == "none":
         return "not adjusted for the number of tests"
-    return f"{NAMES[plan.adjust]}-adjusted over {family_words(plan, count)}"
+    return f"{NAMES[plan.adjust]}-adjusted over {family_words(plan, found)}"

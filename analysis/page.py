@@ -74,7 +74,7 @@ def lead(evidence: Evidence) -> str:
     """Who is analysed, and what it takes to be named below."""
     sample, alpha = evidence.sample, evidence.plan.alpha
     test = "repeated-measures ANOVA, Greenhouse–Geisser corrected" if sample.mode == "repeated" else "one-way ANOVA"
-    test += f", {deciding_words(evidence.plan, sum(each.p is not None for each in evidence.main))}"
+    test += f", {deciding_words(evidence.plan, evidence.main)}"
     return (
         f"{counted(sample.n_started, 'person').replace('persons', 'people')} started, {sample.n_completed} completed, "
         f"{sample.n_analysed} are analysed. An effect is named where p < {alpha:g} ({test}); the interval of each "

@@ -1,6 +1,6 @@
 """The declared tests of a study, ready to be made of thousands of simulated ones."""
 
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from functools import partial
 from itertools import combinations
@@ -10,13 +10,16 @@ import numpy as np
 import pandas as pd
 
 from analysis.evidence import BETWEEN
-from analysis.plan import AnalysisPlan, Mode
+from analysis.families import family_of
+from analysis.plan import AnalysisPlan, Mode, PlannedContrast
 from analysis.row_design import RowDesign
 from analysis.rows import rows_of
 from analysis.statistics.batches import Moments, repeated_p
 from analysis.statistics.undefined import Floats
 from analysis.study import StudyInfo
 from analysis.tables import SHOWN_LEVELS
+from analysis.wording import joined
+from fakesss.problem import nearest
 
 Kind = Literal["difference", "contrast", "equivalence"]
 Adjust = Literal["none", "holm", "fdr"]
@@ -80,12 +83,45 @@ def planned_tests(
     rows, notes = rows_of(study, plan, expected)
     if mode == "independent" and any(row.kind == "interaction" for row in rows):
         rows, notes = [row for row in rows if row.kind != "interaction"], [*notes, BETWEEN]
-    designs = [RowDesign.of(row, study, plan, mode, means[row.question]) for row in rows]
+    notes += [f"{row.title}: one picture; a test needs at least two" for row in rows if len(row.levels) < 2]
+    designs = [RowDesign.of(row, study, plan, mode, means[row.question]) for row in rows if len(row.levels) > 1]
+    contrasts, lacking = contrasts_of(study, plan, mode, expected)
     tests = [difference_test(design, plan) for design in designs]
-    if mode == "repeated":
-        tests += contrast_tests(study, plan, means)
+    tests += [contrast_test(contrast, study, plan, means[contrast.question]) for contrast in contrasts]
     tests += [test for design in designs for test in equivalence_tests(design, plan)]
-    return tests, notes
+    return tests, [*notes, *lacking, *chosen(designs, plan)]
+
+
+def contrasts_of(
+    study: StudyInfo, plan: AnalysisPlan, mode: Mode, expected: pd.DataFrame
+) -> tuple[list[PlannedContrast], list[str]]:
+    """The planned contrasts that the report would test, and why others are left out."""
+    if mode == "independent":
+        names = joined([f'"{contrast.name}"' for contrast in plan.contrast])
+        said = [f"Planned contrasts are not tested between people: each is of one person's ratings. Left out: {names}."]
+        return [], said if names else []
+    kept, notes = [], []
+    for contrast in plan.contrast:
+        rated = set(expected.loc[expected["question"] == contrast.question, "stimulus"])
+        lost = next((name for name, weight in contrast.weights.items() if weight and name not in rated), None)
+        if lost is None:
+            kept.append(contrast)
+        else:
+            where = f'contrast "{contrast.name}" on {contrast.question} is left out'
+            notes.append(f'{where}: nobody rates "{lost}"; {nearest(lost, rated)}')
+    return kept, notes
+
+
+def chosen(designs: Sequence[RowDesign], plan: AnalysisPlan) -> list[str]:
+    """What a picture picked by the ratings does to the tests it is in."""
+    titles = [design.row.title for design in designs if design.best is not None and len(design.own) > 1]
+    if not titles:
+        return []
+    return [
+        f"{joined(titles)}: the same ratings pick the best of {len(designs[0].own)} own pictures, so that the test "
+        f"finds a difference by chance alone in more than {100 * plan.alpha:g}% of studies; not all of its power is an "
+        "effect's."
+    ]
 
 
 def difference_test(design: RowDesign, plan: AnalysisPlan) -> PlannedTest:
@@ -99,27 +135,27 @@ def difference_test(design: RowDesign, plan: AnalysisPlan) -> PlannedTest:
         p=design.difference_p,
         alpha=plan.alpha,
         difference=None if design.best is not None else design.expected_difference(),
-        family={"all": "rows", "question": f"rows on {row.question}", "factor": f"rows of {row.name}"}[plan.family],
+        family=family_of(row, plan),
         adjust=plan.adjust,
     )
 
 
-def contrast_tests(study: StudyInfo, plan: AnalysisPlan, means: Means) -> Iterator[PlannedTest]:
-    """The planned contrasts (`analysis.planned`): a paired t test is a repeated-measures effect of one contrast."""
-    for contrast in plan.contrast:
-        weights = np.array([[contrast.weights.get(picture.id, 0.0)] for picture in study.pictures])
-        expected = sum(weight * means[contrast.question][name] for name, weight in contrast.weights.items())
-        yield PlannedTest(
-            title=f"{contrast.question}: {contrast.name}",
-            question=contrast.question,
-            name=contrast.name,
-            kind="contrast",
-            p=partial(repeated_p, contrasts=weights),
-            alpha=plan.alpha,
-            difference=abs(float(expected)),
-            family=f"contrasts on {contrast.question}",
-            adjust="none" if plan.adjust == "none" else "holm",
-        )
+def contrast_test(
+    contrast: PlannedContrast, study: StudyInfo, plan: AnalysisPlan, means: Mapping[str, float]
+) -> PlannedTest:
+    """A planned contrast (`analysis.planned`): a paired t test is a repeated-measures effect of one contrast."""
+    weights = np.array([[contrast.weights.get(picture.id, 0.0)] for picture in study.pictures])
+    return PlannedTest(
+        title=f"{contrast.question}: {contrast.name}",
+        question=contrast.question,
+        name=contrast.name,
+        kind="contrast",
+        p=partial(repeated_p, contrasts=weights),
+        alpha=plan.alpha,
+        difference=abs(sum(weight * means[name] for name, weight in contrast.weights.items() if weight)),
+        family=f"contrasts on {contrast.question}",
+        adjust="none" if plan.adjust == "none" else "holm",
+    )
 
 
 def equivalence_tests(design: RowDesign, plan: AnalysisPlan) -> Iterator[PlannedTest]:

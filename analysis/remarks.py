@@ -35,8 +35,12 @@ def remarks(
     said += [sentence for each in found for sentence in each.trouble]
     said += notes
     said += dict.fromkeys(sentence for each in found for sentence in row_remarks(each))
-    if any(each.row.kind == "comparison" and each.row.picked_best for each in found):
-        said.append('The "best" own picture was picked by the same ratings: the choice flatters its mean.')
+    own = sum(picture.role == "factor" for picture in study.pictures)
+    if own > 1 and any(each.row.picked_best for each in found):
+        said.append(
+            f'The "best" of {own} own pictures was picked by the same ratings: the choice flatters its mean, '
+            f"and comparisons with it find a difference by chance alone in more than {100 * plan.alpha:g}% of studies."
+        )
     tested = [each.p for each in found if each.p is not None]
     if plan.adjust == "none" and len(tested) > 1 and min(tested) < plan.alpha:
         chance = len(tested) * plan.alpha

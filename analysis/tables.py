@@ -94,7 +94,7 @@ def table_4_5(each: Analysed) -> Table:
 def table_of_tests(found: Sequence[Analysed], plan: AnalysisPlan) -> Table:
     """The test that fits the design: corrected for sphericity, adjusted over the declared family, with effect size."""
     tested = [each for each in found if each.p is not None]
-    note = f"p Holm and p BH (Benjamini–Hochberg): adjusted over {family_words(plan, len(tested))}. {decides(plan)}"
+    note = f"p Holm and p BH (Benjamini–Hochberg): adjusted over {family_words(plan, found)}. {decides(plan)}"
     head: tuple[str, ...] = ("Configuration", "F", "df", "p", "p Holm", "p BH", "η² [90% CI]")
     caption = "One-way ANOVA of independent samples"
     if found and found[0].mode == "repeated":

@@ -9,15 +9,16 @@ from typing import Any
 import numpy as np
 import pandas as pd
 import pytest
+from statsmodels.stats.multitest import multipletests
 from thesis_study import QUESTIONS, stimulus, thesis_stimuli, write_manifest
 
 from analysis.evidence import BETWEEN, Evidence
 from analysis.factorials import factorials_of
-from analysis.families import adjusted
+from analysis.families import adjusted, family_words
 from analysis.margins import equivalence_table, judge
-from analysis.plan import Mode
+from analysis.plan import Comparison, Mode
 from analysis.planned import deciding, planned_table
-from analysis.planned_tests import planned_tests
+from analysis.planned_tests import PlannedTest, planned_tests
 from analysis.power import Simulation
 from analysis.results import analyse
 from analysis.rows import rows_of
@@ -65,9 +66,12 @@ def answers(question: str, people: int, studies: int, random: np.random.Generato
     return np.clip(np.rint(4 + shift + person + random.normal(0, 1, (people, studies, pictures))), 1, 7)
 
 
+def simulation_means(study: StudyInfo) -> dict[str, dict[str, float]]:
+    return {name: {picture.id: 4.0 for picture in study.pictures} for name in QUESTIONS}
+
+
 def simulation_of(study: StudyInfo, mode: Mode) -> tuple[Simulation, list[str]]:
-    means = {name: {picture.id: 4.0 for picture in study.pictures} for name in QUESTIONS}
-    tests, notes = planned_tests(study, study.plan, mode, means)
+    tests, notes = planned_tests(study, study.plan, mode, simulation_means(study))
     pictures = len(study.pictures)
     return Simulation(tests, lambda *given: answers(*given, pictures), pictures, STUDIES, 5), notes
 
@@ -206,3 +210,67 @@ def test_without_factors_every_picture_is_compared_but_no_repeat(tmp_path: Path)
     means = {"img01": 4.0, "img02": 4.5, "img03": 4.0, "img04": 9.0}
     tests, _ = planned_tests(study, study.plan, "repeated", dict.fromkeys(QUESTIONS, means))
     assert [test.difference for test in tests if test.kind == "difference"] == [0.5] * 3
+
+
+def planned(study: StudyInfo, mode: Mode = "repeated") -> tuple[list[PlannedTest], list[str]]:
+    return planned_tests(study, study.plan, mode, simulation_means(study))
+
+
+def test_contrasts_of_pictures_that_nobody_rates_are_left_out(tmp_path: Path) -> None:
+    """As in the report; a picture shown again has its first showing alone in the tests."""
+    wrong = [
+        {"name": "unknown", "question": "translucent", "weights": {"img01": 1.0, "img99": -1.0}},
+        {"name": "again", "question": "translucent", "weights": {"img01": 1.0, "img01r": -1.0}},
+        {"name": "no weight", "question": "translucent", "weights": {"img01": 1.0, "img02": -1.0, "img99": 0.0}},
+    ]
+    again = stimulus(1, role="repeat", label="25 (again)", same_picture_as="img01") | {"id": "img01r"}
+    path = write_manifest(tmp_path, [*thesis_stimuli(), again], {"contrast": wrong})
+    tests, notes = planned(read_manifest(path))
+    assert [test.name for test in tests if test.kind == "contrast"] == ["no weight"]
+    assert notes[0].startswith('contrast "unknown" on translucent is left out: nobody rates "img99"; did you mean "img')
+    assert 'contrast "again" on translucent is left out: nobody rates "img01r"; did you mean "img01"?' in notes
+
+
+def test_between_people_contrasts_are_left_out_with_a_sentence(tmp_path: Path) -> None:
+    tests, notes = planned(one_at_a_time(tmp_path, mode="independent", contrast=CONTRASTS), "independent")
+    assert not [test for test in tests if test.kind == "contrast"]
+    assert any('Left out: "exponents", "lights" and "weights".' in note for note in notes)
+    without = one_at_a_time(tmp_path / "without", mode="independent")
+    assert not any("contrasts" in note for note in planned(without, "independent")[1])
+
+
+def test_one_picture_has_no_test(tmp_path: Path) -> None:
+    path = write_manifest(tmp_path, [stimulus(1, role="control", label="alone")], {})
+    data = json.loads(path.read_text())
+    data["study"]["factors"] = []
+    path.write_text(json.dumps(data))
+    tests, notes = planned(read_manifest(path))
+    assert tests == []
+    assert "Translucent vs picture: one picture; a test needs at least two" in notes
+
+
+def test_comparisons_that_nobody_declared_take_nothing_from_the_planned_tests(tmp_path: Path) -> None:
+    """They are adjusted among themselves, in simulated studies as in the report."""
+    study = one_at_a_time(tmp_path, alpha=0.2, family="all", adjust="holm")
+    evidence = reported(study, "repeated")
+    titles = check(study, evidence)
+    assert len(titles) == 9 + 3 and titles[9] == "Translucent: others vs ours"
+    for mine in (evidence.main[:9], evidence.main[9:]):
+        p = [each.p for each in mine if each.p is not None]
+        assert [each.p_holm for each in mine if each.p is not None] == pytest.approx(
+            list(multipletests(p, method="holm")[1])
+        )
+    added = "all 9 tests, comparisons that [analysis] does not declare among themselves"
+    assert family_words(study.plan, evidence.main) == added
+    declaring = study.plan.model_copy(update={"comparison": (Comparison.model_validate(COMPARED),)})
+    assert family_words(declaring, evidence.main) == "all 12 tests"
+
+
+def test_a_picture_picked_by_the_ratings_is_said_to_differ_by_chance(tmp_path: Path) -> None:
+    study = one_at_a_time(tmp_path, alpha=0.1, comparison=[COMPARED])
+    assert planned(study)[1] == [
+        "Others: the same ratings pick the best of 9 own pictures, so that the test finds a difference by chance alone "
+        "in more than 10% of studies; not all of its power is an effect's."
+    ]
+    named = COMPARED | {"stimuli": ["img10", "img11"]}
+    assert planned(one_at_a_time(tmp_path / "named", comparison=[named]))[1] == []
