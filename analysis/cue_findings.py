@@ -100,8 +100,21 @@ def find_cues(evidence: Evidence, question: str) -> CueFindings | None:
     together, why = fitted_together(pictures[used])
     said += why
     joint = attempt(CueRegression(*columns, tuple(together), evidence.plan.confidence)) if len(together) > 1 else None
-    explained = explained_means(evidence.study, frame, used, together)
+    if slopes is not None:
+        said += equal_slopes(question, slopes)
+    explained, why = explained_means(evidence.study, frame, used, together)
+    said += [f"Share explained of “{question}”: {reason}." for reason in why]
     return CueFindings(question, frame, tuple(used), slopes, joint, explained, tuple(said))
+
+
+def equal_slopes(question: str, slopes: pd.DataFrame) -> list[str]:
+    """A sentence on each cue with a slope but no test of it."""
+    same = slopes[slopes["p"].isna() & (slopes["slope"] != 0)]
+    return [
+        f"Every participant’s slope of “{question}” on {cue_name(str(row['cue']))} is {signed(row['slope'])}; without "
+        "spread there is no test of it, and Holm’s adjustment does not count it."
+        for row in same.to_dict("records")
+    ]
 
 
 def usable(pictures: pd.DataFrame) -> tuple[list[str], list[str]]:
@@ -153,37 +166,48 @@ def told_apart(z: pd.DataFrame, together: bool) -> tuple[list[str], list[str]]:
     return kept, said
 
 
-def explained_means(study: StudyInfo, frame: pd.DataFrame, used: list[str], together: list[str]) -> pd.DataFrame:
-    """R squared of the means of the pictures that the factors made: by the factors, by each cue, by all cues."""
-    levels = factor_columns(study)
+def explained_means(
+    study: StudyInfo, frame: pd.DataFrame, used: list[str], together: list[str]
+) -> tuple[pd.DataFrame, list[str]]:
+    """R squared of the means of the pictures that the factors made: by the factors, by each cue, by all cues; and why
+    there is none by others."""
+    levels, said = factor_columns(study)
     known = frame.merge(levels, on="picture") if len(levels) else frame
     factors = [str(name) for name in levels.columns if name != "picture"]
     varied = [name for name in factors if not is_flat(known.drop_duplicates("picture")[name].to_numpy(dtype=float))]
+    if factors and not varied:
+        said.append("the pictures that were rated do not differ in the factors, so these explain nothing")
     sets = {BY_FACTORS: varied, **{cue_name(cue): [cue] for cue in used}, BY_CUES: together}
     rows = []
+    without: dict[str, list[str]] = {}
     for name, predictors in sets.items():
         if not predictors:
-            continue
+            continue  # said above, or with the regression
         try:
             found = ExplainedMeans("rating", "participant", "picture", tuple(predictors))(known)
-        except Undefined:
-            continue  # the sentence on few pictures stands with the regression; the table has no such row
-        rows.append({"explained_by": name, **found.to_dict("records")[0]})
-    return pd.DataFrame(rows)
+        except Undefined as reason:
+            without.setdefault(str(reason), []).append(name)
+        else:
+            rows.append({"explained_by": name, **found.to_dict("records")[0]})
+    said += [f"none by {joined(names)} ({reason})" for reason, names in without.items()]
+    return pd.DataFrame(rows), said
 
 
-def factor_columns(study: StudyInfo) -> pd.DataFrame:
-    """`picture` and what its levels are as numbers: a column per numeric factor, else one per level but the first."""
+def factor_columns(study: StudyInfo) -> tuple[pd.DataFrame, list[str]]:
+    """`picture` and what its levels are as numbers: a column per numeric factor, else one per level but the first; and
+    which factors have none."""
     made = [p for p in study.pictures if p.role == "factor" and p.levels]
     columns: dict[str, list[float]] = {}
+    said = []
     for factor in study.factors:
         given = [dict(p.levels).get(factor.name) for p in made]
         numbers = [float(level) for level in given if isinstance(level, int | float) and not isinstance(level, bool)]
-        if None in given:
-            continue  # a picture without a level of it has no place on its axis
-        if len(numbers) == len(given):
+        if None in given:  # a picture without a level has no place on the factor's axis
+            if any(level is not None for level in given):
+                said.append(f"the factor {factor.name} is left out, as not every picture has a level of it")
+        elif len(numbers) == len(given):
             columns[factor.name] = numbers
         else:
             for level in factor.levels[1:]:
                 columns[f"{factor.name} {level}"] = [float(other == level) for other in given]
-    return pd.DataFrame({"picture": [p.id for p in made], **columns}) if columns else pd.DataFrame()
+    return (pd.DataFrame({"picture": [p.id for p in made], **columns}) if columns else pd.DataFrame()), said

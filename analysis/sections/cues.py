@@ -9,13 +9,14 @@ from analysis.cue_findings import BY_CUES, BY_FACTORS, CueFindings, cue_name, cu
 from analysis.evidence import Evidence
 from analysis.figures.cues import cue_figure
 from analysis.section import Section, rendered
-from analysis.tables import Table
-from analysis.wording import apa_df, apa_p, no_zero, sentence_case, signed, thesis_p
+from analysis.tables import Table, told_once
+from analysis.wording import apa_df, apa_p, counted, no_zero, percent, sentence_case, signed, thesis_p
 
 ELSEWHERE = (
     "Pictures made elsewhere have cues of their whole area, background included, and no thickness: they are listed in "
     "tables/cues.csv and not analysed here."
 )
+FEW = "“{}” is not analysed here: fewer than two different pictures of the study’s own were rated."
 
 
 def cues(evidence: Evidence) -> Section | None:
@@ -24,15 +25,17 @@ def cues(evidence: Evidence) -> Section | None:
     if listed.empty:
         return None
     questions = [q.name for q in evidence.study.questions if q.name in set(evidence.sample.ratings["question"])]
-    found = [one for question in questions if (one := find_cues(evidence, question)) is not None]
+    tried = {question: find_cues(evidence, question) for question in questions}
+    found = [one for one in tried.values() if one is not None]
     if not found:
         return None
     figures = [cue_figure(evidence.study, one, number) for number, one in enumerate(found, 1)]
     drawings = tuple(figure for figure in figures if figure is not None)
     said = list(dict.fromkeys(sentence for one in found for sentence in one.said))
+    said += [FEW.format(question) for question, one in tried.items() if one is None]
     if "compare" in set(listed["role"]):
         said.append(ELSEWHERE)
-    level = f"{evidence.plan.confidence:.0%} CI"
+    level = f"{percent(evidence.plan.confidence)} CI"
     body = rendered(
         "cues",
         drawings=drawings,
@@ -43,7 +46,7 @@ def cues(evidence: Evidence) -> Section | None:
     )
     tables = {"cues": listed, **machine_tables(found)}
     summary = tuple(sentence for one in found if (sentence := strongest(one, evidence.plan.alpha)))
-    sentences = tuple(sentence for one in found if (sentence := apa_cue(one, level)))
+    sentences = tuple(sentence for one in found if (sentence := apa_cue(one, evidence.plan.alpha, level)))
     return Section("cues", "Cues", body, tables, drawings, summary, sentences)
 
 
@@ -60,40 +63,101 @@ def machine_tables(found: Sequence[CueFindings]) -> dict[str, pd.DataFrame]:
     return tables
 
 
-def best(one: CueFindings) -> dict[Hashable, Any] | None:
-    """The tested cue whose slope is steepest; None without any."""
-    if one.slopes is None or not one.slopes["p"].notna().any():
-        return None
-    tested = one.slopes[one.slopes["p"].notna()].to_dict("records")
-    return max(tested, key=lambda cue: abs(float(cue["slope"])))
+def steepest(slopes: pd.DataFrame) -> dict[Hashable, Any] | None:
+    """The row of the steepest slope; None of an empty table."""
+    return max(slopes.to_dict("records"), key=lambda cue: abs(float(cue["slope"])), default=None)
+
+
+def beyond_chance(slopes: pd.DataFrame, alpha: float) -> tuple[pd.DataFrame, pd.DataFrame]:
+    """Cues that other people would go by on these pictures, and those that other pictures would show in these people.
+
+    Equal slopes of everybody and means on a line have no test and need none.
+    """
+    everyone = slopes["p"].isna() & (slopes["slope"] != 0)
+    line = slopes["p_pictures"].isna() & slopes["r"].notna() & (slopes["pictures"] > 2)
+    return slopes[(slopes["p_holm"] < alpha) | everyone], slopes[(slopes["p_pictures_holm"] < alpha) | line]
 
 
 def strongest(one: CueFindings, alpha: float) -> str:
-    """For the paragraph that stands first: which cue goes along most with the question."""
-    found = best(one)
-    if found is None:
+    """For the paragraph that stands first: which cue goes along most with the question, and of whom that is true.
+
+    That one does is claimed where neither other people nor other pictures would change it.
+    """
+    if one.slopes is None or not one.slopes[["p", "p_pictures"]].notna().any(axis=None):
         return ""
     what = sentence_case(one.question)
-    if found["p_holm"] >= alpha:
-        return f"{what}: no image cue goes along with it beyond chance (Holm over {len(one.used)} cues)."
-    more = "more" if found["slope"] > 0 else "less"
-    return (
-        f"{what} goes along most with {cue_name(str(found['cue']))}: rated {abs(found['slope']):.2f} {more} for each "
-        f"standard deviation more of it between pictures, {apa_p(found['p_holm'])} (Holm); an association, not a cause."
-    )
+    people, pictures = beyond_chance(one.slopes, alpha)
+    both = people[people["cue"].isin(pictures["cue"])]
+    if (cue := steepest(both)) is not None:
+        return (
+            f"{what} goes along most with {name_of(cue)}: rated {by_how_much(cue)} ({of_people(one, cue)}); "
+            f"{of_pictures(one, cue)}; an association, not a cause."
+        )
+    if (cue := steepest(people)) is not None:
+        return (
+            f"{what}: on these pictures it goes along most with {name_of(cue)}, rated {by_how_much(cue)} "
+            f"({of_people(one, cue)}), but other pictures may not show it: {of_pictures(one, cue)}."
+        )
+    if (cue := steepest(pictures)) is not None:
+        return (
+            f"{what}: these participants’ means go along most with {name_of(cue)} ({of_pictures(one, cue)}), but other "
+            f"participants may not show it: rated {by_how_much(cue)}, {of_people(one, cue)}."
+        )
+    return f"{what}: no image cue goes along with it beyond chance ({counted_in(one, 'p')})."
 
 
-def apa_cue(one: CueFindings, level: str) -> str:
-    """A sentence to paste about the steepest slope."""
-    found = best(one)
-    if found is None:
+def name_of(cue: dict[Hashable, Any]) -> str:
+    """As a reader calls it."""
+    return cue_name(str(cue["cue"]))
+
+
+def by_how_much(cue: dict[Hashable, Any]) -> str:
+    """The slope in words."""
+    more = "more" if cue["slope"] > 0 else "less"
+    return f"{abs(cue['slope']):.2f} {more} for each standard deviation more of it between pictures"
+
+
+def counted_in(one: CueFindings, p: str) -> str:
+    """Over how many tests Holm's adjustment goes: those that have a p."""
+    assert one.slopes is not None
+    return f"Holm over {counted(int(one.slopes[p].notna().sum()), 'cue')}"
+
+
+def of_people(one: CueFindings, cue: dict[Hashable, Any]) -> str:
+    """The test of the slopes."""
+    if pd.isna(cue["p"]):
+        return "the same slope in everybody, so no test"
+    return f"{apa_p(cue['p_holm'])}, {counted_in(one, 'p')}"
+
+
+def of_pictures(one: CueFindings, cue: dict[Hashable, Any]) -> str:
+    """The test of the correlation with the pictures' means."""
+    if pd.isna(cue["r"]):
+        return "the pictures’ means are all equal"
+    if pd.isna(cue["p_pictures"]):
+        few = cue["pictures"] <= 2
+        return "two pictures allow no test of that" if few else "the pictures’ means are on a line, so no test"
+    r = f"r = {no_zero(cue['r'], 2)} with the means of {cue['pictures']:.0f} pictures"
+    return f"{r}, {apa_p(cue['p_pictures_holm'])}, {counted_in(one, 'p_pictures')}"
+
+
+def apa_cue(one: CueFindings, alpha: float, level: str) -> str:
+    """A sentence to paste about the steepest slope of those beyond chance, else of all that were tested."""
+    if one.slopes is None:
         return ""
+    tested = one.slopes[one.slopes["p"].notna()]
+    people, pictures = beyond_chance(tested, alpha)
+    both = people[people["cue"].isin(pictures["cue"])]
+    chosen = next((found for found in (both, people) if len(found)), tested)
+    cue = steepest(chosen)
+    if cue is None:
+        return ""
+    which = "the steepest mean slope" if chosen is tested else "of the significant mean slopes the steepest"
     return (
         f"Within participants, ratings of “{one.question}” were regressed on each standardised image cue over "
-        f"{found['pictures']:.0f} different pictures; the steepest mean slope was that on "
-        f"{cue_name(str(found['cue']))}, b = {signed(found['slope'])}, {level} "
-        f"[{signed(found['ci_low'])}, {signed(found['ci_high'])}], "
-        f"t({apa_df(found['df'])}) = {signed(found['t'])}, {apa_p(found['p_holm'])} (Holm over {len(one.used)} cues)."
+        f"{cue['pictures']:.0f} different pictures; {which} was that on {name_of(cue)}, b = {signed(cue['slope'])}, "
+        f"{level} [{signed(cue['ci_low'])}, {signed(cue['ci_high'])}], t({apa_df(cue['df'])}) = {signed(cue['t'])}, "
+        f"{of_people(one, cue)}, a test that takes these pictures as given; over pictures, {of_pictures(one, cue)}."
     )
 
 
@@ -105,24 +169,27 @@ def table_of_slopes(found: Sequence[CueFindings], level: str) -> Table | None:
         if one.slopes is not None
         for place, cue in enumerate(one.slopes.to_dict("records"))
     )
-    head = ("Question", "Cue", "r of means", "Slope", level, "t", "df", "p", "Holm")
+    head = ("Question", "Cue", "r of means", "Holm of r", "Slope", level, "t", "df", "p", "Holm of p")
     note = (
+        "r: correlation of the pictures’ mean ratings with the cue; its p tells whether other pictures would show it. "
         "Slope: steps of the scale for one standard deviation of the cue between the pictures, the mean of every "
-        "person’s own slope, tested against 0. Holm: p adjusted over the cues of a question. r: correlation of the "
-        "pictures’ mean ratings with the cue."
+        "person’s own slope, tested against 0; that p is of these pictures only and tells whether other people would "
+        "show it. Holm: adjusted over the cues of a question."
     )
     caption = "One cue at a time: the slope of each person’s ratings on the cue"
-    return Table("table-cue-slopes", caption, head, rows, text_columns=2, note=note) if rows else None
+    table = Table("table-cue-slopes", caption, head, rows, text_columns=2, note=note)
+    return told_once(table, "df") if rows else None
 
 
 def slope_cells(cue: dict[Hashable, Any]) -> tuple[str, ...]:
     """The numbers of one cue; dashes where all people have the same slope."""
     r = "–" if pd.isna(cue["r"]) else no_zero(cue["r"], 2)
+    of_r = "–" if pd.isna(cue["p_pictures_holm"]) else thesis_p(cue["p_pictures_holm"])
     if pd.isna(cue["p"]):
-        return (r, signed(cue["slope"]), "–", "–", f"{cue['df']:.0f}", "–", "–")
+        return (r, of_r, signed(cue["slope"]), "–", "–", f"{cue['df']:.0f}", "–", "–")
     interval = f"[{signed(cue['ci_low'])}, {signed(cue['ci_high'])}]"
     test = (signed(cue["t"]), f"{cue['df']:.0f}", thesis_p(cue["p"]), thesis_p(cue["p_holm"]))
-    return (r, signed(cue["slope"]), interval, *test)
+    return (r, of_r, signed(cue["slope"]), interval, *test)
 
 
 def table_of_regression(found: Sequence[CueFindings], level: str) -> Table | None:
@@ -134,6 +201,7 @@ def table_of_regression(found: Sequence[CueFindings], level: str) -> Table | Non
             signed(cue["slope"]),
             f"[{signed(cue['ci_low'])}, {signed(cue['ci_high'])}]",
             signed(cue["t"]),
+            f"{cue['df']:.0f}",
             thesis_p(cue["p"]),
             f"{cue['vif']:.1f}",
         )
@@ -141,13 +209,14 @@ def table_of_regression(found: Sequence[CueFindings], level: str) -> Table | Non
         if one.joint is not None
         for place, cue in enumerate(one.joint.to_dict("records"))
     )
-    head = ("Question", "Cue", "Slope", level, "t", "p", "VIF")
+    head = ("Question", "Cue", "Slope", level, "t", "df", "p", "VIF")
     note = (
         "Least squares of all ratings on all these cues, standard errors clustered by participant. A slope is what one "
         "standard deviation of the cue adds while the others stay. VIF: how much larger its variance is than if the "
-        "cue went along with no other. p unadjusted."
+        "cue went along with no other. p unadjusted, and of these pictures only."
     )
-    return Table("table-cue-regression", "Cues at once", head, rows, text_columns=2, note=note) if rows else None
+    table = Table("table-cue-regression", "Cues at once", head, rows, text_columns=2, note=note)
+    return told_once(table, "df") if rows else None
 
 
 def in_short(explained: pd.DataFrame) -> list[dict[Hashable, Any]]:

@@ -11,7 +11,7 @@ from statsmodels.regression.linear_model import OLS
 from statsmodels.stats.outliers_influence import variance_inflation_factor
 
 from analysis.statistics.multiplicity import adjusted
-from analysis.statistics.undefined import Floats, Undefined, require_columns
+from analysis.statistics.undefined import Floats, Undefined, not_zero, require_columns
 from fakesss.problem import BadInput
 
 FLAT = 1e-5  # relative range of a cue that is its rounding
@@ -24,10 +24,15 @@ class CueSlopes:
 
     The frame has a row per person and picture; `cues` name columns that are the same in all rows of a picture. A cue is
     standardised over the pictures (n - 1), so a slope is in steps of the scale for a standard deviation between
-    pictures. Returns a row per cue: `cue, pictures, r` (correlation with the pictures' means), `slope, ci_low, ci_high,
-    t, df, p, p_holm` (over the cues), `n` (people with a slope). NaN for t and p where all slopes are equal; such a cue
-    is not counted in the adjustment. Agrees with R `t.test(sapply(split(d, d$person), \\(x) coef(lm(rating ~ z,
-    x))[2]))`. Lorch & Myers (1990), method 3. It says nothing of causes: cues that change together share their slopes.
+    pictures. Returns a row per cue: `cue, pictures, r` (correlation with the pictures' means), `p_pictures,
+    p_pictures_holm` (of r, with pictures - 2 df; NaN for two pictures or means on a line), `slope, ci_low, ci_high, t,
+    df, p, p_holm` (over the cues), `n` (people with a slope). NaN for t and p where all slopes are equal; what is NaN
+    is not counted in the adjustment. Agrees with R `cor.test(means, cue)` and `t.test(sapply(split(d, d$person), \\(x)
+    coef(lm(rating ~ z, x))[2]))`.
+
+    Lorch & Myers (1990), method 3: `p` asks whether other people would have such slopes on these very pictures, and is
+    small for most cues that have nothing to do with the ratings (the fixed effect of Clark 1973); `p_pictures` asks
+    whether other pictures would show it. Neither tells of causes: cues that change together share their slopes.
 
     Raises `Undefined` where a cue is the same in all pictures, or nobody rated two pictures in which it differs.
     """
@@ -42,8 +47,10 @@ class CueSlopes:
         """The table for a long `frame`, one row per person and picture."""
         wide, pictures = by_picture(frame, self.value, self.subject, self.picture, self.cues)
         table = pd.DataFrame([self.row(cue, wide, standardised(pictures[cue])) for cue in self.cues])
-        table["p_holm"] = adjusted(table["p"], "holm")
-        return table[["cue", "pictures", "r", "slope", "ci_low", "ci_high", "t", "df", "p", "p_holm", "n"]]
+        for p in ("p", "p_pictures"):
+            table[f"{p}_holm"] = adjusted(table[p], "holm")
+        first = ["cue", "pictures", "r", "p_pictures", "p_pictures_holm"]
+        return table[[*first, "slope", "ci_low", "ci_high", "t", "df", "p", "p_holm", "n"]]
 
     def row(self, cue: str, wide: pd.DataFrame, z: Floats) -> dict[str, object]:
         """One cue, not yet adjusted."""
@@ -53,9 +60,8 @@ class CueSlopes:
                 f"{self.value} by {cue}: {len(slopes)} {self.subject}s rated pictures in which it differs; a test of "
                 "slopes needs at least two"
             )
-        means = np.asarray(wide.mean(), dtype=np.float64)
-        r = np.nan if is_flat(means, SAME) else float(np.corrcoef(means, z)[0, 1])
-        row = {"cue": cue, "pictures": len(z), "r": r, "slope": float(slopes.mean()), "n": len(slopes)}
+        row = {"cue": cue, "pictures": len(z), "slope": float(slopes.mean()), "n": len(slopes)}
+        row |= dict(zip(("r", "p_pictures"), correlation(np.asarray(wide.mean(), dtype=np.float64), z), strict=True))
         row |= dict.fromkeys(("t", "p", "ci_low", "ci_high"), np.nan) | {"df": len(slopes) - 1}
         if np.ptp(slopes) <= SAME * np.abs(slopes).max():
             return row
@@ -63,7 +69,7 @@ class CueSlopes:
         low, high = found.confidence_interval(self.confidence)
         return row | {
             "t": float(found.statistic),
-            "p": float(found.pvalue),
+            "p": not_zero(found.pvalue),
             "ci_low": float(low),
             "ci_high": float(high),
         }
@@ -106,7 +112,7 @@ class CueRegression:
         intervals = fit.conf_int(1 - self.confidence)[1:]
         columns = {"cue": self.cues, "slope": fit.params[1:], "se": fit.bse[1:]}
         columns |= {"ci_low": intervals[:, 0], "ci_high": intervals[:, 1], "t": fit.tvalues[1:], "df": len(wide) - 1}
-        columns |= {"p": fit.pvalues[1:], "vif": inflation(z), "n": len(wide), "pictures": len(pictures)}
+        columns |= {"p": not_zero(fit.pvalues[1:]), "vif": inflation(z), "n": len(wide), "pictures": len(pictures)}
         return pd.DataFrame(columns)
 
 
@@ -136,7 +142,7 @@ class ExplainedMeans:
         exact = fit.ssr <= SAME * fit.centered_tss
         row = {"predictors": len(self.predictors), "pictures": len(z), "r2": 1.0 if exact else float(fit.rsquared)}
         row |= {"r2_adjusted": 1.0 if exact else float(fit.rsquared_adj), "F": np.nan if exact else float(fit.fvalue)}
-        row |= {"df1": int(fit.df_model), "df2": int(fit.df_resid), "p": np.nan if exact else float(fit.f_pvalue)}
+        row |= {"df1": int(fit.df_model), "df2": int(fit.df_resid), "p": np.nan if exact else not_zero(fit.f_pvalue)}
         return pd.DataFrame([row])
 
 
@@ -162,6 +168,15 @@ def standardised(cue: "pd.Series[float]") -> Floats:
     if is_flat(values):
         raise Undefined(f"{cue.name}: is the same in all pictures, so nothing goes along with it")
     return np.asarray((values - values.mean()) / values.std(ddof=1))
+
+
+def correlation(means: Floats, z: Floats) -> tuple[float, float]:
+    """Pearson's r of the pictures' means and a cue, and its p: NaN where there is none, p also where r is exact."""
+    if is_flat(means, SAME):
+        return np.nan, np.nan
+    found = stats.pearsonr(means, z)
+    r = float(found.statistic)
+    return r, float(found.pvalue) if len(z) > 2 and abs(r) < 1 - SAME else np.nan
 
 
 def is_flat(values: Floats, rounding: float = FLAT) -> bool:

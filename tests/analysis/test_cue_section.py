@@ -9,11 +9,12 @@ import pandas as pd
 import pytest
 from thesis_study import stimulus, thesis_stimuli, write_manifest
 
-from analysis.cue_findings import CueFindings, factor_columns, find_cues, fitted_together
+from analysis.cue_findings import CueFindings, equal_slopes, factor_columns, find_cues, fitted_together
 from analysis.evidence import Evidence
 from analysis.sample import draw_sample
 from analysis.section import Section
-from analysis.sections.cues import cues
+from analysis.sections.cues import apa_cue, cues, strongest
+from analysis.statistics.multiplicity import adjusted
 from analysis.study import Factor, read_manifest
 
 QUESTION = "translucent"
@@ -71,9 +72,13 @@ def test_a_sweep_of_twelve_pictures(tmp_path: Path) -> None:
     assert made.tables["cues"].shape == (12, 8)
     (sentence,) = made.summary
     assert sentence.startswith("Translucent goes along most with contrast: rated 1.")
-    assert sentence.endswith("p < .001 (Holm); an association, not a cause.")
+    assert "more of it between pictures (p < .001, Holm over 4 cues); r = .9" in sentence
+    assert sentence.endswith("means of 12 pictures, p < .001, Holm over 4 cues; an association, not a cause.")
     (paste,) = made.sentences
-    assert "over 12 different pictures; the steepest mean slope was that on contrast, b = 1." in paste
+    assert (
+        "over 12 different pictures; of the significant mean slopes the steepest was that on contrast, b = 1." in paste
+    )
+    assert "Holm over 4 cues, a test that takes these pictures as given; over pictures, r = .9" in paste
     body = str(made.body)
     assert "Left out, as the same in all pictures: mean thickness." in body
     assert "skew of luminance cannot be told from contrast (r = 1.000)" in body
@@ -170,6 +175,95 @@ def test_one_rating_each_has_no_slopes(tmp_path: Path) -> None:
     assert "0 participants rated pictures in which it differs" in str(made.body) and "cue_slopes" not in made.tables
 
 
+def slopes_of(**columns: list[float]) -> CueFindings:
+    """Findings with a table of slopes alone, a cue per entry of the columns."""
+    cues_ = ["rms_contrast", "luminance_skew", "gradient_energy"][: len(columns["slope"])]
+    table = pd.DataFrame({"cue": cues_, "pictures": 9, "r": 0.5, "t": 2.0, "df": 7, "n": 8, **columns})
+    table = table.assign(ci_low=table["slope"] - 1, ci_high=table["slope"] + 1)
+    for p in ("p", "p_pictures"):
+        table[f"{p}_holm"] = adjusted(table[p], "holm")
+    return CueFindings(QUESTION, pd.DataFrame(), tuple(cues_), table, None, pd.DataFrame(), ())
+
+
+def test_a_steep_slope_that_is_chance_does_not_hide_one_that_is_none() -> None:
+    one = slopes_of(slope=[2.0, -0.3, 0.1], p=[0.4, 0.001, 0.01], p_pictures=[0.2, 0.001, 0.01])
+    assert strongest(one, 0.05) == (
+        "Translucent goes along most with skew of luminance: rated 0.30 less for each standard deviation more of it "
+        "between pictures (p = .003, Holm over 3 cues); r = .50 with the means of 9 pictures, p = .003, Holm over 3 "
+        "cues; an association, not a cause."
+    )
+    assert "of the significant mean slopes the steepest was that on skew of luminance, b = −0.30" in apa_cue(
+        one, 0.05, "95% CI"
+    )
+
+
+def test_what_these_pictures_show_is_not_claimed_of_others() -> None:
+    one = slopes_of(slope=[0.5, 0.4], p=[0.001, 0.3], p_pictures=[0.2, 0.6])
+    assert strongest(one, 0.05) == (
+        "Translucent: on these pictures it goes along most with contrast, rated 0.50 more for each standard deviation "
+        "more of it between pictures (p = .002, Holm over 2 cues), but other pictures may not show it: r = .50 with "
+        "the means of 9 pictures, p = .400, Holm over 2 cues."
+    )
+    two = slopes_of(slope=[0.5, 0.4], p=[0.001, 0.3], p_pictures=[np.nan, np.nan], pictures=[2, 2], r=[1.0, 1.0])
+    assert strongest(two, 0.05).endswith("but other pictures may not show it: two pictures allow no test of that.")
+    line = slopes_of(slope=[0.5, 0.4], p=[0.001, 0.3], p_pictures=[np.nan, 0.2], r=[1.0, 0.4])
+    assert strongest(line, 0.05).endswith(
+        "cues); the pictures’ means are on a line, so no test; an association, not a cause."
+    )
+
+
+def test_what_few_people_show_is_not_claimed_of_others() -> None:
+    one = slopes_of(slope=[0.5, 0.4], p=[0.3, 0.4], p_pictures=[0.001, 0.6])
+    assert strongest(one, 0.05) == (
+        "Translucent: these participants’ means go along most with contrast (r = .50 with the means of 9 pictures, "
+        "p = .002, Holm over 2 cues), but other participants may not show it: rated 0.50 more for each standard "
+        "deviation more of it between pictures, p = .600, Holm over 2 cues."
+    )
+    assert "the steepest mean slope was that on contrast" in apa_cue(one, 0.05, "95% CI")
+
+
+def test_equal_slopes_are_named_and_not_counted() -> None:
+    one = slopes_of(slope=[0.5, 0.4], p=[np.nan, 0.4], p_pictures=[0.001, 0.6])
+    assert strongest(one, 0.05).startswith(
+        "Translucent goes along most with contrast: rated 0.50 more for each standard deviation more of it between "
+        "pictures (the same slope in everybody, so no test); r = .50"
+    )
+    assert one.slopes is not None and equal_slopes(QUESTION, one.slopes) == [
+        "Every participant’s slope of “translucent” on contrast is 0.50; without spread there is no test of it, and "
+        "Holm’s adjustment does not count it."
+    ]
+    chance = slopes_of(slope=[0.0, 0.4], p=[np.nan, 0.4], p_pictures=[0.8, 0.6])
+    assert strongest(chance, 0.05) == "Translucent: no image cue goes along with it beyond chance (Holm over 1 cue)."
+
+
+def test_a_share_that_is_not_explained_is_said(tmp_path: Path) -> None:
+    findings = found(evidence_of(tmp_path / "s", sweep(2)))
+    assert findings.explained.empty
+    (sentence,) = [said for said in findings.said if said.startswith("Share explained")]
+    assert sentence.startswith("Share explained of “translucent”: none by the factors, contrast, skew of luminance")
+    assert "(rating: 2 pictures for 1 predictors; at least 3 are needed" in sentence
+
+
+def test_a_factor_without_levels_everywhere_is_said(tmp_path: Path) -> None:
+    stimuli = sweep(8)
+    for entry in stimuli:
+        entry["factors"] = {"thickness exponent": 25 + int(entry["id"][3:]), **entry["factors"]}
+    del stimuli[0]["factors"]["backlight"]
+    assert (
+        "Share explained of “translucent”: the factor backlight is left out, as not every picture has a level of it."
+        in found(evidence_of(tmp_path / "s", stimuli)).said
+    )
+
+
+def test_a_question_of_one_picture_is_said(tmp_path: Path) -> None:
+    evidence = evidence_of(tmp_path / "s", sweep(8))
+    one = evidence.ratings[evidence.ratings["stimulus"] == "img01"].assign(question="realistic")
+    ratings = pd.concat([evidence.ratings, one], ignore_index=True)
+    sample = draw_sample(ratings, evidence.plan)
+    made = section(Evidence(evidence.study, evidence.plan, sample, ratings, (), ()))
+    assert "“realistic” is not analysed here: fewer than two different pictures" in str(made.body)
+
+
 def test_a_manifest_without_cues_has_no_section(tmp_path: Path) -> None:
     assert cues(evidence_of(tmp_path / "s", thesis_stimuli())) is None
 
@@ -180,7 +274,8 @@ def test_a_level_that_is_a_word_is_a_predictor_of_its_own(tmp_path: Path) -> Non
         entry["factors"] = {"backlight": [1.2, 0.8, 1.6][place % 3], "diffuse weight": [0.2, "none"][place % 2]}
     study = read_manifest(write_manifest(tmp_path / "s", stimuli, {}))
     study = replace(study, factors=(*study.factors[:2], Factor("diffuse weight", (0.2, "none"))))
-    table = factor_columns(study)
+    table, said = factor_columns(study)
+    assert said == []
     assert list(table["backlight"]) == [1.2, 0.8, 1.6] * 2
     assert list(table["diffuse weight none"]) == [0, 1] * 3
     assert list(table) == ["picture", "backlight", "diffuse weight none"]

@@ -52,9 +52,11 @@ def test_slopes_are_a_t_test_of_each_persons_regression(missing: int) -> None:
         )
         means = frame.groupby("picture")["rating"].mean()
         values = frame.drop_duplicates("picture").set_index("picture")[cue]
-        assert found["r"] == pytest.approx(stats.pearsonr(means, values[means.index]).statistic)
+        over_pictures = stats.linregress(values[means.index], means)
+        assert [found["r"], found["p_pictures"]] == pytest.approx([over_pictures.rvalue, over_pictures.pvalue])
         assert (found["n"], found["df"], found["pictures"]) == (9, 8, 8)
-    assert list(table["p_holm"]) == pytest.approx(list(multipletests(table["p"], method="holm")[1]))
+    for p in ("p", "p_pictures"):
+        assert list(table[f"{p}_holm"]) == pytest.approx(list(multipletests(table[p], method="holm")[1]))
     assert table["p"]["a"] < 0.01
 
 
@@ -82,6 +84,30 @@ def test_people_of_one_mind_have_a_slope_and_no_test() -> None:
     table = CueSlopes(*COLUMNS, ("a", "b"))(frame)
     assert list(table["slope"]) == pytest.approx([1.0, 0.0]) and list(table["r"]) == pytest.approx([1.0, 0.0])
     assert table[["t", "p", "p_holm", "ci_low"]].isna().all(axis=None)
+
+
+def test_two_pictures_and_means_on_a_line_tell_nothing_of_others() -> None:
+    two = CueSlopes(*COLUMNS, ("a",))(rated(pictures=2)).iloc[0]
+    assert abs(two["r"]) == pytest.approx(1) and np.isnan(two["p_pictures"]) and 0 < two["p"] < 1
+    showings = [(who, k) for who in range(3) for k in range(4)]
+    line = pd.DataFrame(
+        [{"participant": w, "picture": f"i{k}", "rating": k + (w - 1) * (k == 2), "a": k} for w, k in showings]
+    )
+    found = CueSlopes(*COLUMNS, ("a",))(line).iloc[0]
+    assert found["r"] == pytest.approx(1) and np.isnan(found["p_pictures"]) and np.isnan(found["p_pictures_holm"])
+
+
+def test_a_cue_that_is_chance_is_beyond_it_in_these_people_and_not_in_pictures() -> None:
+    """Nine pictures that differ, a cue drawn at random: the slopes' test rejects far too often, r's at its level."""
+    people, small = 0, 0
+    for seed in range(60):
+        rng = np.random.default_rng([7, seed])
+        who, at = (index.ravel() for index in np.indices((20, 9)))
+        rating = np.clip(np.rint(4 + rng.normal(size=9)[at] + rng.normal(size=180)), 1, 7)
+        frame = pd.DataFrame({"participant": who, "picture": at, "rating": rating, "a": rng.normal(size=9)[at]})
+        found = CueSlopes(*COLUMNS, ("a",))(frame).iloc[0]
+        people, small = people + (found["p"] < 0.05), small + (found["p_pictures"] < 0.05)
+    assert people > 30 and small < 10
 
 
 def test_one_cue_of_complete_data_has_the_same_slope_in_both() -> None:
