@@ -7,6 +7,7 @@ import numpy as np
 import pandas as pd
 
 from analysis.plan import AnalysisPlan, Mode
+from analysis.reasons import reader_words
 from analysis.results import METHODS, Analysed, Statistic
 from analysis.statistics.diagnostics import LARGEST, EqualSpread, Residuals, ScaleEnds
 from analysis.statistics.undefined import Undefined
@@ -45,13 +46,13 @@ def assumption_entry(each: Analysed, anova: Mapping[str, Any]) -> dict[str, Any]
     else:
         spread = EqualSpread("rating", "condition")
         reasons += fill(
-            entry, spread, each.answers, {"levene_w": "levene_w", "p": "levene_p", "variance_ratio": "variance_ratio"}
+            entry, spread, each, {"levene_w": "levene_w", "p": "levene_p", "variance_ratio": "variance_ratio"}
         )
     if each.row.kind == "interaction":
         reasons.append("residuals: those of its factors' rows")
     else:
         shape = Residuals("rating", "condition", "participant" if each.mode == "repeated" else None)
-        reasons += fill(entry, shape, each.answers, dict(zip(RESIDUALS, RESIDUALS, strict=True)))
+        reasons += fill(entry, shape, each, dict(zip(RESIDUALS, RESIDUALS, strict=True)))
         if np.isnan(entry["shapiro_p"]) and not np.isnan(entry["skewness"]):
             reasons.append(f"Shapiro and Wilk's p is not accurate above {LARGEST:,} residuals")
     return {**entry, "reason": "; ".join(reasons)}
@@ -63,15 +64,17 @@ def no_sphericity(entry: Mapping[str, Any], anova: Mapping[str, Any]) -> list[st
         return []
     if anova["df1"] == 1:
         return ["two levels have but one difference, so sphericity holds"]
+    if entry["n"] > anova["df1"] + 1:
+        return ["a difference between samples is the same in everyone, so Mauchly’s test has no value"]
     return [f"{entry['n']} participants for {entry['k']} levels: sphericity cannot be judged"]
 
 
-def fill(entry: dict[str, Any], statistic: Statistic, frame: pd.DataFrame, names: Mapping[str, str]) -> list[str]:
+def fill(entry: dict[str, Any], statistic: Statistic, each: Analysed, names: Mapping[str, str]) -> list[str]:
     """Puts a statistic's row into the entry (its name -> ours), or returns the sentence why there is none."""
     try:
-        row = statistic(frame).iloc[0]
+        row = statistic(each.answers).iloc[0]
     except Undefined as reason:
-        return [str(reason)]
+        return [reader_words(reason, each.row.labels)]
     entry |= {ours: float(row[theirs]) for theirs, ours in names.items()}
     if np.isinf(entry.get("variance_ratio", np.nan)):
         entry["variance_ratio"] = np.nan

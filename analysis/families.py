@@ -40,12 +40,19 @@ def family_words(plan: AnalysisPlan, found: Sequence[Analysed]) -> str:
     """all 10 tests; the tests of each question."""
     tested = [undeclared(each.row, plan) for each in found if each.p is not None]
     added = sum(tested) if not all(tested) else 0
-    words = f"all {len(tested) - added} tests" if plan.family == "all" else f"the tests of each {plan.family}"
+    words = together(len(tested) - added) if plan.family == "all" else f"the tests of each {plan.family}"
     return f"{words}, comparisons that [analysis] does not declare among themselves" if added else words
+
+
+def together(count: int) -> str:
+    """all 10 tests; the only test."""
+    return {0: "no test", 1: "the only test", 2: "both tests"}.get(count, f"all {count} tests")
 
 
 def deciding_words(plan: AnalysisPlan, found: Sequence[Analysed]) -> str:
     """Which p decides: how it is adjusted, and over which tests."""
     if plan.adjust == "none":
         return "not adjusted for the number of tests"
+    if not any(each.p is not None for each in found):
+        return "which has no value here"
     return f"{NAMES[plan.adjust]}-adjusted over {family_words(plan, found)}"

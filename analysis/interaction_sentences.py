@@ -6,7 +6,7 @@ import pandas as pd
 
 from analysis.plan import AnalysisPlan
 from analysis.results import Analysed
-from analysis.wording import apa_df, apa_p, joined, level_text, no_zero
+from analysis.wording import apa_df, apa_p, joined, level_text, no_zero, true_minus
 
 SAID = 8  # simple effects beyond these stand in the table alone
 
@@ -38,7 +38,7 @@ def interaction_sentence(each: Analysed) -> str:
         return f"How {joined(firsts)} work together depends on {last}: their effects must be read for each combination."
     moved, held = turned(each)
     spread = spreads(each, held)
-    at = joined([f"{value:.2f} apart at {held} {level}" for level, value in spread.items()])
+    at = joined([f"{value:.2f} apart at {held} {true_minus(level)}" for level, value in spread.items()])
     return f"The effect of {moved} depends on {held}: its highest and lowest mean are {at}."
 
 
@@ -75,6 +75,6 @@ def simple_text(part: "dict[object, float] | pd.Series[float]", plan: AnalysisPl
     df1, df2 = (apa_df(part[name] * part["epsilon_gg"]) for name in ("df1", "df2"))
     verdict = "" if part["p_holm"] < plan.alpha else " (not significant)"
     return (
-        f"{part['factor']} at {part['at']}, F({df1}, {df2}) = {part['F']:.2f}, {apa_p(part['p_holm'])}, "
-        f"η²p = {no_zero(part['partial_eta_squared'], 3)}{verdict}"
+        f"{part['factor']} at {true_minus(str(part['at']))}, F({df1}, {df2}) = {part['F']:.2f}, "
+        f"{apa_p(part['p_holm'])}, η²p = {no_zero(part['partial_eta_squared'], 3)}{verdict}"
     )

@@ -10,7 +10,7 @@ def natural_key(label: object) -> tuple[tuple[int, float, str], ...]:
     """Sorts digits by value and words without regard to case; equal keys are told apart by the label itself."""
     parts = re.split(r"(\d+)", str(label))
     words = [(0, float(part), "") if part.isdecimal() else (1, 0.0, part.casefold()) for part in parts if part]
-    return (*words, (2, 0.0, str(label)))
+    return (*words, (-1, 0.0, str(label)))
 
 
 def natural_order(labels: Iterable[object]) -> list[object]:

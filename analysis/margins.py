@@ -9,6 +9,7 @@ import numpy as np
 import pandas as pd
 
 from analysis.plan import EquivalencePlan
+from analysis.reasons import reader_words
 from analysis.results import METHODS, Analysed
 from analysis.statistics.equivalence import UNTESTED, Equivalence
 from analysis.statistics.undefined import Undefined
@@ -27,7 +28,7 @@ class Judged:
     @property
     def labels(self) -> dict[str, str]:
         """Code -> what the sample is called."""
-        return {level.code: level.label for level in self.each.row.levels}
+        return self.each.row.labels
 
     @property
     def records(self) -> list[dict[str, Any]]:
@@ -87,18 +88,10 @@ def judge_row(each: Analysed, margin: float, alpha: float) -> tuple[list[Judged]
     try:
         pairs = Equivalence("rating", "condition", subject, margin, alpha)(each.answers)
     except Undefined as reason:
-        labels = {level.code: level.label for level in each.row.levels}
-        return [], [f"Equivalence of {each.row.title}: {with_names(str(reason), labels)}."]
+        return [], [f"Equivalence of {each.row.title}: {reader_words(reason, each.row.labels)}."]
     judged = Judged(each, margin, alpha, pairs)
     reasons = [pair["reason"] for pair in judged.records if pair["verdict"] == UNTESTED]
-    return [judged], [f"Equivalence of {each.row.title}: {with_names(reason, judged.labels)}." for reason in reasons]
-
-
-def with_names(sentence: str, labels: dict[str, str]) -> str:
-    """A statistic's sentence with the samples' names in place of their codes."""
-    for code, label in labels.items():
-        sentence = sentence.replace(f'"{code}"', f"“{label}”")
-    return sentence
+    return [judged], [f"Equivalence of {each.row.title}: {reader_words(reason, judged.labels)}." for reason in reasons]
 
 
 def equivalence_table(judged: Iterable[Judged]) -> pd.DataFrame:
@@ -110,6 +103,6 @@ def equivalence_table(judged: Iterable[Judged]) -> pd.DataFrame:
         head = {"question": row.question, "factor": row.name, "method": METHODS[one.each.mode]}
         for pair in one.records:
             names = {"a": key[pair["a"]], "b": key[pair["b"]], "samples": f"{pair['a']} vs {pair['b']}"}
-            reason = with_names(pair["reason"], one.labels)
+            reason = reader_words(pair["reason"], one.labels)
             entries.append({**head, **pair, **names, "margin": one.margin, "alpha": one.alpha, "reason": reason})
     return pd.DataFrame(entries)

@@ -6,9 +6,9 @@ from typing import Any
 import pandas as pd
 
 from analysis.models import Modelled
-from analysis.tables import SHOWN_LEVELS, Table
+from analysis.tables import SHOWN_LEVELS, Table, told_once
 from analysis.verdicts import NAMES, finders, tested_rows
-from analysis.wording import joined, thesis_p
+from analysis.wording import joined, percent, thesis_p, true_minus
 
 PARTS = {"participant": "People", "picture": "Pictures", "residual": "Residual"}
 
@@ -39,7 +39,7 @@ def table_of_verdicts(fitted: Sequence[Modelled], alpha: float) -> Table | None:
     return Table(
         "table-models",
         f"The same question put to {len(names)} tests",
-        ("Configuration", f"Effect at {alpha:.0%} by", *head),
+        ("Configuration", f"Effect at {percent(alpha)} by", *head),
         tuple(rows),
         text_columns=2,
         note="p without adjustment for the number of tests. χ² of the models: Wald's joint test, which takes the "
@@ -55,29 +55,35 @@ def heading(name: str) -> str:
 def table_of_odds(odds: pd.DataFrame, fitted: Sequence[Modelled], confidence: float) -> Table | None:
     """Odds ratios of every level against the first of its factor."""
     titles = {(each.row.question, each.row.name): each.row.title for model in fitted for each in model.found}
+    fits = {(each.row.question, each.row.name): model.ordinal for model in fitted for each in model.found}
     rows, long = [], []
     groups = odds.groupby(["question", "factor"], sort=False) if len(odds) else ()
     for (question, factor), part in groups:
-        title = titles[(str(question), str(factor))]
+        title, fit = titles[(str(question), str(factor))], fits[(str(question), str(factor))]
+        assert fit is not None
+        counts = (str(fit.n), str(fit.clusters or "–"))
         if len(part) >= SHOWN_LEVELS:
             long.append(title)
             continue
         for place, row in enumerate(part.to_dict("records")):
             shown = (ratio(row["odds_ratio"]), f"[{ratio(row['ci_low'])}, {ratio(row['ci_high'])}]")
-            rows.append((title if place == 0 else "", f"{row['level']} against {row['against']}", *shown))
+            rows.append(
+                (title if place == 0 else "", true_minus(f"{row['level']} against {row['against']}"), *counts, *shown)
+            )
     if not rows:
         return None
     note = "Odds of a higher answer at the level, divided by those at the factor's first level; 1 is no difference."
     if long:
         note += f" Many levels: those of {joined(long)} stand in tables/odds_ratios.csv."
-    return Table(
+    table = Table(
         "table-odds",
         "Odds ratios of the proportional odds model",
-        ("Configuration", "Level", "Odds ratio", f"{confidence:.0%} CI"),
+        ("Configuration", "Level", "ratings", "participants", "Odds ratio", f"{percent(confidence)} CI"),
         tuple(rows),
         text_columns=2,
         note=note,
     )
+    return told_once(table, "ratings", "participants")
 
 
 def ratio(value: float) -> str:

@@ -60,7 +60,7 @@ def render_page(evidence: Evidence, sections: Sequence[Section], said: Sequence[
         sections=sections,
         apa=[("", sentences), *((section.title, section.sentences) for section in sections)],
         remarks=said,
-        tables=[name for section in sections for name in section.tables],
+        tables=[name for section in sections for name, table in section.tables.items() if len(table.columns)],
         origin=origin,
         thumbnails={
             key: uri for section in sections for each in section.drawings for key, uri in each.pictures.items()
@@ -78,5 +78,17 @@ def lead(evidence: Evidence) -> str:
     return (
         f"{counted(sample.n_started, 'person').replace('persons', 'people')} started, {sample.n_completed} completed, "
         f"{sample.n_analysed} are analysed. An effect is named where p < {alpha:g} ({test}); the interval of each "
-        "difference allows for all pairs (Tukey)."
+        f"difference allows for all pairs (Tukey).{fewer(evidence)}"
+    )
+
+
+def fewer(evidence: Evidence) -> str:
+    """How many people the tests within people rest on, where some lack a rating; empty where nobody does."""
+    sizes = [each.n[0] for each in evidence.main if each.mode == "repeated" and each.p is not None]
+    if not sizes or min(sizes) == evidence.sample.n_analysed:
+        return ""
+    few, many = min(sizes), max(sizes)
+    return (
+        f" Each test takes the people who rated all pictures that it compares: {few if few == many else f'{few} to {many}'} "
+        f"of the {evidence.sample.n_analysed}, as the others lack a rating."
     )

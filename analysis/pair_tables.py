@@ -6,8 +6,8 @@ import pandas as pd
 
 from analysis.plan import AnalysisPlan
 from analysis.results import Analysed
-from analysis.tables import SHOWN_LEVELS, Table
-from analysis.wording import apa_df, no_zero, sentence_case, signed, thesis_p
+from analysis.tables import SHOWN_LEVELS, Table, sizes_text, told_once
+from analysis.wording import apa_df, no_zero, percent, sentence_case, signed, thesis_p, true_minus
 
 SHOWN_EFFECTS = 24  # simple effects of an interaction; more stand in tables/simple_effects.csv
 CHOSEN = {"all": "all pairs", "reference": "each level with the first", "neighbours": "levels that follow each other"}
@@ -24,14 +24,16 @@ def table_of_pairs(found: Iterable[Analysed], confidence: float) -> Table | None
     for each in found:
         if each.tukey is None or len(each.row.levels) > SHOWN_LEVELS:
             continue
-        labels = {level.code: level.label for level in each.row.levels}
+        labels = each.row.labels
         for place, pair in enumerate(each.tukey.to_dict("records")):
             name = f"{labels[pair['a']]} minus {labels[pair['b']]}"
             numbers = (signed(pair["difference"]), interval(pair["ci_low"], pair["ci_high"]), f"{pair['q']:.2f}")
-            rows.append(("" if place else each.row.title, name, *numbers, thesis_p(pair["p"])))
-    head = ("Configuration", "Pair", "Difference", f"{confidence:.0%} CI", "q", "p Tukey")
+            facts = (f"{pair['df']:.0f}", sizes_text(each.n))
+            rows.append(("" if place else each.row.title, name, *numbers, *facts, thesis_p(pair["p"])))
+    head = ("Configuration", "Pair", "Difference", f"{percent(confidence)} CI", "q", "df", "n", "p Tukey")
     note = "Intervals and p hold together for all pairs of a row."
-    return Table("table-pairs", "All pairs, Tukey", head, tuple(rows), text_columns=2, note=note) if rows else None
+    table = Table("table-pairs", "All pairs, Tukey", head, tuple(rows), text_columns=2, note=note)
+    return told_once(table, "df", "n") if rows else None
 
 
 def table_of_contrasts(found: Iterable[Analysed], plan: AnalysisPlan) -> Table | None:
@@ -40,12 +42,12 @@ def table_of_contrasts(found: Iterable[Analysed], plan: AnalysisPlan) -> Table |
     for each in found:
         if each.contrasts is None or len(each.row.levels) > SHOWN_LEVELS:
             continue
-        labels = {level.code: level.label for level in each.row.levels}
+        labels = each.row.labels
         for place, pair in enumerate(each.contrasts.to_dict("records")):
             name = f"{labels[pair['a']]} minus {labels[pair['b']]}"
             numbers = (signed(pair["difference"]), interval(pair["ci_low"], pair["ci_high"]))
             rows.append(("" if place else each.row.title, name, *numbers, *t_test_cells(pair)))
-    head = ("Configuration", "Pair", "Difference", f"{plan.confidence:.0%} CI", "t", "df", "p Holm", "d_z")
+    head = ("Configuration", "Pair", "Difference", f"{percent(plan.confidence)} CI", "t", "df", "p Holm", "d_z")
     note = (
         "p Holm: adjusted within each row. The interval is that of the pair alone. d_z: mean difference over the "
         "standard deviation of differences. A pair that everyone rates the same distance apart has no t."
@@ -69,14 +71,16 @@ def table_of_simple_effects(found: Iterable[Analysed]) -> Table | None:
             continue
         for place, part in enumerate(each.simple.to_dict("records")):
             title = "" if place else sentence_case(each.row.question)
-            rows.append((title, f"{part['factor']} at {part['at']}", *simple_cells(part)))
-    head = ("Question", "Effect of", "F", "df", "p", "p Holm", "η²p", "90% CI")
+            name = f"{part['factor']} at {true_minus(part['at'])}"
+            rows.append((title, name, str(each.n[0]), *simple_cells(part)))
+    head = ("Question", "Effect of", "n", "F", "df", "p", "p Holm", "η²p", "90% CI")
     note = (
         "The effect of one factor with the others held, Greenhouse–Geisser corrected, each with its own error. p Holm: "
         "adjusted over the effects of an interaction. η²p: partial eta squared. A dash: no spread to test against. "
         "They follow up an interaction: without a significant one they only repeat the main effects."
     )
-    return Table("table-simple", "Simple effects", head, tuple(rows), text_columns=2, note=note) if rows else None
+    table = Table("table-simple", "Simple effects", head, tuple(rows), text_columns=2, note=note)
+    return told_once(table, "n") if rows else None
 
 
 def simple_cells(part: "dict[object, float]") -> tuple[str, ...]:
@@ -113,7 +117,7 @@ def table_of_planned(planned: pd.DataFrame, plan: AnalysisPlan) -> Table | None:
         "Contrast",
         "Weights",
         "Estimate",
-        f"{plan.confidence:.0%} CI",
+        f"{percent(plan.confidence)} CI",
         "t",
         "df",
         "p Holm",

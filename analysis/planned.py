@@ -5,11 +5,13 @@ from collections.abc import Iterator
 import pandas as pd
 
 from analysis.plan import AnalysisPlan, PlannedContrast
+from analysis.reasons import reader_words
 from analysis.sample import Sample
 from analysis.statistics import planned
 from analysis.statistics.multiplicity import Adjusted
 from analysis.statistics.undefined import Undefined
-from analysis.wording import apa_df, apa_p, joined, signed
+from analysis.wording import apa_df, apa_p, joined, percent, signed
+from fakesss.problem import nearest
 
 T_TEST = ("estimate", "ci_low", "ci_high", "t", "df", "p", "p_holm", "d_z", "d_av", "n", "dropped")
 COLUMNS = ("contrast", "question", "weights", *T_TEST)
@@ -20,10 +22,15 @@ def planned_table(sample: Sample, plan: AnalysisPlan) -> tuple[pd.DataFrame, lis
     rows, notes = [], []
     for contrast in plan.contrast:
         mine = sample.ratings[sample.ratings["question"] == contrast.question]
+        place = f'contrast "{contrast.name}" on {contrast.question} is left out'
+        if mine.empty:
+            asked = nearest(contrast.question, sample.ratings["question"].unique())
+            notes.append(f"{place}: nobody answered that question; {asked}")
+            continue
         try:
             row = statistic(contrast, plan)(mine).iloc[0].to_dict()
         except Undefined as reason:
-            notes.append(f'contrast "{contrast.name}" on {contrast.question} is left out: {reason}')
+            notes.append(f"{place}: {reader_words(reason)}")
             continue
         rows.append(
             {"contrast": contrast.name, "question": contrast.question, "weights": weights_text(contrast), **row}
@@ -60,7 +67,7 @@ def planned_sentences(table: pd.DataFrame, plan: AnalysisPlan) -> Iterator[str]:
         holm = "" if plan.adjust == "none" else " (Holm-adjusted)"
         yield (
             f"The planned contrast “{row['contrast']}” ({row['weights']}) on ratings of “{row['question']}” {verdict}, "
-            f"M = {signed(row['estimate'])}, {plan.confidence:.0%} CI [{signed(row['ci_low'])}, "
+            f"M = {signed(row['estimate'])}, {percent(plan.confidence)} CI [{signed(row['ci_low'])}, "
             f"{signed(row['ci_high'])}], t({apa_df(row['df'])}) = {signed(row['t'])}, {apa_p(p)}{holm}, "
             f"d_z = {signed(row['d_z'])}."
         )
@@ -71,7 +78,7 @@ def planned_summary(table: pd.DataFrame, plan: AnalysisPlan) -> tuple[str, ...]:
     if table.empty:
         return ()
     found = [
-        f"“{row['contrast']}” on {row['question']} ({signed(row['estimate'])}, {plan.confidence:.0%} CI "
+        f"“{row['contrast']}” on {row['question']} ({signed(row['estimate'])}, {percent(plan.confidence)} CI "
         f"{signed(row['ci_low'])} to {signed(row['ci_high'])})"
         for _, row in table.iterrows()
         if deciding(row, plan) < plan.alpha

@@ -7,7 +7,8 @@ from typing import Any
 import numpy as np
 import pandas as pd
 
-from analysis.labels import natural_order
+from analysis.labels import natural_key, natural_order
+from analysis.reasons import reader_words
 from analysis.sample import Sample
 from analysis.statistics.agreement import IntraclassCorrelation, KrippendorffAlpha
 from analysis.statistics.undefined import Undefined
@@ -55,7 +56,7 @@ def valued(make: Callable[[pd.DataFrame], Entry], frame: pd.DataFrame, what: str
     try:
         return make(frame), []
     except Undefined as reason:
-        return {}, [f"{what}: {reason}"]
+        return {}, [f"{what}: {reader_words(reason)}"]
 
 
 def icc_entry(mine: pd.DataFrame) -> Entry:
@@ -95,15 +96,20 @@ def retest_table(shown: pd.DataFrame, study: StudyInfo) -> pd.DataFrame:
         for question, part in shown[shown["picture"] == picture].groupby("question", sort=False):
             wide = part.pivot_table(index="participant", columns="showing", values="rating").dropna()
             if len(wide) and wide.shape[1] > 1:
-                entries.append({"question": question, **agreement(wide)})
+                entries.append({"question": question, **agreement(wide[in_turn(wide, str(picture))])})
     order = {q.name: place for place, q in enumerate(study.questions)}
     entries.sort(key=lambda entry: order.get(str(entry["question"]), len(order)))
     return pd.DataFrame(entries)
 
 
+def in_turn(wide: pd.DataFrame, picture: str) -> list[str]:
+    """The showings as they are numbered: the picture itself, then its repeats in natural order."""
+    return sorted(map(str, wide.columns), key=lambda name: (name != picture, natural_key(name)))
+
+
 def agreement(wide: pd.DataFrame) -> Entry:
-    """Self-agreement in a participants x showings table."""
-    names = [str(name) for name in natural_order(wide.columns)]
+    """Self-agreement in a participants x showings table, the first showing first."""
+    names = list(wide.columns)
     gaps = np.concatenate([(wide[a] - wide[b]).abs().to_numpy() for a, b in combinations(names, 2)])
     return {
         "showings": ", ".join(names),

@@ -5,11 +5,13 @@ from difflib import get_close_matches
 
 import pandas as pd
 
+from analysis.labels import natural_key
 from analysis.plan import AnalysisPlan
+from analysis.reasons import reader_words
 from analysis.results import Analysed
 from analysis.sample import Sample
 from analysis.study import StudyInfo
-from analysis.wording import counted, joined, sentence_case
+from analysis.wording import counted, joined, percent, sentence_case, true_minus
 
 NOT_LIVE = {
     "simulated": "These answers are simulated: programs gave them, not people.",
@@ -39,14 +41,14 @@ def remarks(
     if own > 1 and any(each.row.picked_best for each in found):
         said.append(
             f'The "best" of {own} own pictures was picked by the same ratings: the choice flatters its mean, '
-            f"and comparisons with it find a difference by chance alone in more than {100 * plan.alpha:g}% of studies."
+            f"and comparisons with it find a difference by chance alone in more than {percent(plan.alpha)} of studies."
         )
     tested = [each.p for each in found if each.p is not None]
     if plan.adjust == "none" and len(tested) > 1 and min(tested) < plan.alpha:
         chance = len(tested) * plan.alpha
         said.append(
-            f"{len(tested)} tests at the {plan.alpha:.0%} level: if no picture differed, about {chance:.1f} would be "
-            "significant by chance. The Holm column allows for that."
+            f"{len(tested)} tests at the {percent(plan.alpha)} level: if no picture differed, about {chance:.1f} would "
+            "be significant by chance. The Holm column allows for that."
         )
     if any(each.row.kind == "comparison" for each in found):
         said.append('"Non significant" between two pictures is not evidence that they are rated alike.')
@@ -64,13 +66,11 @@ def row_remarks(each: Analysed) -> list[str]:
     if each.anova is None or each.mode != "repeated":
         return []
     said = []
-    if each.row.kind == "interaction" and each.n[0] <= each.anova["df1"] + 1:
-        people = counted(each.n[0], "participant")
-        said.append(f"{each.row.title}: {people} for {each.anova['df1']} contrasts; sphericity cannot be judged.")
-    elif each.row.kind != "interaction" and each.n[0] <= len(each.row.levels):
-        people = counted(each.n[0], "participant")
-        said.append(f"{each.row.title}: {people} for {len(each.row.levels)} levels; sphericity cannot be judged.")
-    who = [name for name in str(each.anova["dropped"]).split("; ") if name]
+    contrasts = int(each.anova["df1"])
+    if contrasts > 1 and each.n[0] <= contrasts + 1:  # of one contrast sphericity holds
+        levels = f"{contrasts} contrasts" if each.row.kind == "interaction" else f"{contrasts + 1} levels"
+        said.append(f"{each.row.title}: {counted(each.n[0], 'participant')} for {levels}; sphericity cannot be judged.")
+    who = sorted((name for name in str(each.anova["dropped"]).split("; ") if name), key=natural_key)
     if who:
         people = counted(len(who), "participant")
         where = sentence_case(each.row.question) if "effect" in each.anova else each.row.title
@@ -82,7 +82,9 @@ def row_remarks(each: Analysed) -> list[str]:
 def reasons(each: Analysed) -> list[str]:
     """Why simple effects of an interaction have no value."""
     return (
-        [] if each.simple is None else [f"{at}: {why}" for at, why in each.simple[["at", "reason"]].to_numpy() if why]
+        []
+        if each.simple is None
+        else [f"{true_minus(at)}: {reader_words(why)}" for at, why in each.simple[["at", "reason"]].to_numpy() if why]
     )
 
 

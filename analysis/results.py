@@ -8,6 +8,7 @@ import pandas as pd
 
 from analysis.factorials import Factorial
 from analysis.plan import AnalysisPlan, Mode
+from analysis.reasons import reader_words
 from analysis.rows import Row
 from analysis.sample import Sample
 from analysis.statistics.anova import OneWayAnova, RepeatedMeasuresAnova
@@ -94,8 +95,9 @@ Statistic = Callable[[pd.DataFrame], pd.DataFrame]
 class Attempts:
     """Statistics tried one after the other; the sentences on those without a value are kept."""
 
-    def __init__(self, where: str) -> None:
+    def __init__(self, where: str, labels: Mapping[str, str]) -> None:
         self.where = where
+        self.labels = labels
         self.trouble: list[str] = []
 
     def __call__(self, statistic: Statistic, frame: pd.DataFrame) -> pd.DataFrame | None:
@@ -103,7 +105,7 @@ class Attempts:
         try:
             return statistic(frame)
         except Undefined as reason:
-            self.trouble.append(f"{self.where}: {reason}")
+            self.trouble.append(f"{self.where}: {reader_words(reason, self.labels)}")
             return None
 
 
@@ -111,18 +113,25 @@ def analyse(row: Row, sample: Sample, plan: AnalysisPlan, mode: Mode, factorials
     """All statistics of `row` in `mode`. An interaction has them within people alone.
 
     `factorials`: question -> its full factorial; a row that is part of one has the error terms of the whole, and its
-    people: who rated every combination.
+    people: who rated every combination. Where the whole has no value the row has none.
     """
-    attempt = Attempts(f"{row.title} ({METHODS[mode]})")
+    attempt = Attempts(f"{row.title} ({METHODS[mode]})", row.labels)
     cells = row.cells(sample.ratings)
     cells["condition"] = pd.Categorical(cells["condition"], [level.code for level in row.levels])
     whole = factorials[row.question] if row.crossed is not None and mode == "repeated" else None
     effect = whole.effect(row.name) if whole is not None else None
-    if whole is not None and isinstance(effect, dict):
+    if isinstance(effect, str):
+        # a one-way analysis of each person's averages would take one factor's effect for another's: they rated unlike
+        # sets of combinations
+        means = MeanIntervals("rating", "condition", None, plan.confidence)(cells)
+        return Analysed(
+            row, mode, sizes(cells, None), means, None, cells, trouble=(f"{attempt.where}: {reader_words(effect)}",)
+        )
+    if whole is not None:
         cells = cells[cells["participant"].isin(whole.people)]
     if row.kind == "interaction":
-        assert whole is not None
-        return analyse_interaction(row, plan, mode, cells, whole)
+        assert whole is not None and effect is not None
+        return analyse_interaction(row, plan, mode, cells, whole, effect)
     subject = "participant" if mode == "repeated" else None
     one_way: Statistic = OneWayAnova("rating", "condition")
     if subject is not None:
@@ -143,19 +152,16 @@ def analyse(row: Row, sample: Sample, plan: AnalysisPlan, mode: Mode, factorials
     )
     found["n"] = sizes(cells, anova)
     found["anova"] = first_row(anova)
-    if found["anova"] is not None and isinstance(effect, dict):
+    if found["anova"] is not None and effect is not None:
         # the mean square that goes with n means of persons, as the HSD does; the factorial's is that of single pictures
         found["anova"] = {**effect, "ms_error": found["anova"]["ms_error"]}
     return Analysed(row, mode, answers=cells, trouble=tuple(attempt.trouble), **found)
 
 
-def analyse_interaction(row: Row, plan: AnalysisPlan, mode: Mode, cells: pd.DataFrame, whole: Factorial) -> Analysed:
+def analyse_interaction(
+    row: Row, plan: AnalysisPlan, mode: Mode, cells: pd.DataFrame, whole: Factorial, effect: dict[str, Any]
+) -> Analysed:
     """Cell means, the interaction of the factorial, and its simple effects."""
-    effect = whole.effect(row.name)
-    if isinstance(effect, str):
-        means = MeanIntervals("rating", "condition", None, plan.confidence)(cells)
-        why = f"{row.title} ({METHODS[mode]}): {effect}"
-        return Analysed(row, mode, sizes(cells, None), means, None, cells, trouble=(why,))
     means = MeanIntervals("rating", "condition", "participant", plan.confidence)(cells)
     n = (int(effect["n"]),) * len(row.levels)
     return Analysed(row, mode, n, means, effect, cells, simple=whole.simple(row.factors))

@@ -12,7 +12,7 @@ from analysis.labels import natural_order
 from analysis.plan import BEST, AnalysisPlan, Comparison
 from analysis.statistics.factorial import CROSS
 from analysis.study import Factor, Picture, StudyInfo
-from analysis.wording import joined, level_text, sentence_case
+from analysis.wording import joined, level_text, sentence_case, true_minus
 from fakesss.problem import nearest
 
 Kind = Literal["factor", "interaction", "comparison", "all"]
@@ -26,6 +26,11 @@ class Level:
     label: str
     stimuli: tuple[str, ...]
     value: Any = None
+
+    @property
+    def printed(self) -> str:
+        """The label as it is read: a true minus before numbers."""
+        return true_minus(self.label)
 
 
 @dataclass(frozen=True)
@@ -49,6 +54,16 @@ class Row:
     def title(self) -> str:
         """As in table 4.4: question vs factor."""
         return sentence_case(self.name if self.kind == "comparison" else f"{self.question} vs {self.name}")
+
+    @property
+    def compared(self) -> str:
+        """What a comparison is called where its question stands beside it."""
+        return self.name.removeprefix(f"{self.question}: ")
+
+    @property
+    def labels(self) -> dict[str, str]:
+        """Code -> the sample as it is read."""
+        return {level.code: level.printed for level in self.levels}
 
     def cells(self, ratings: pd.DataFrame) -> pd.DataFrame:
         """`participant, condition` (M1..Mk), `rating`: one row per person and sample, averaged over its pictures."""

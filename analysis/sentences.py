@@ -7,10 +7,11 @@ import pandas as pd
 
 from analysis.families import NAMES
 from analysis.interaction_sentences import interaction_sentence, meddlers, significant
+from analysis.nothing_found import nothing_said
 from analysis.plan import AnalysisPlan
 from analysis.results import Analysed
 from analysis.study import Question, StudyInfo
-from analysis.wording import apa_df, apa_p, joined, no_zero, sentence_case, signed
+from analysis.wording import apa_df, apa_p, joined, no_zero, percent, sentence_case, signed
 
 ORDER = ("factor", "interaction", "comparison", "all")
 LISTED = 12  # the means of more samples stand in tables/means.csv
@@ -43,7 +44,8 @@ def findings(study: StudyInfo, found: Sequence[Analysed], plan: AnalysisPlan) ->
         rest = [each for each in mine if not significant(each, plan)]
         if mine:
             effects = tuple(Effect(words(each, mine, question, plan), apa_statistic(each, plan)) for each in matter)
-            result.append(Finding(question, effects, nothing_sentence(rest, plan)))
+            nothing = nothing_said(rest, question, plan)
+            result.append(Finding(question, effects, nothing))
     return result
 
 
@@ -62,7 +64,7 @@ def ordered_means(each: Analysed) -> pd.DataFrame:
     assert each.means is not None
     by_code = {level.code: level for level in each.row.levels}
     table = each.means.assign(
-        label=[by_code[code].label for code in each.means["level"]],
+        label=[by_code[code].printed for code in each.means["level"]],
         value=[by_code[code].value for code in each.means["level"]],
     )
     numeric = all(isinstance(v, int | float) and not isinstance(v, bool) for v in table["value"])
@@ -87,7 +89,7 @@ def effect_sentence(each: Analysed, question: Question, plan: AnalysisPlan) -> s
         what = f"{'steps' if question.scale <= 11 else 'points'} of the {question.scale}-point scale"
     return (
         f"{head} Highest less lowest: {gap(each):.2f} {what} "
-        f"({plan.confidence:.0%} CI {signed(low)} to {signed(high)})."
+        f"({percent(plan.confidence)} CI {signed(low)} to {signed(high)})."
     )
 
 
@@ -104,7 +106,7 @@ def direction(each: Analysed, table: pd.DataFrame) -> str:
 
 def picture_head(each: Analysed, top: "pd.Series[float]", bottom: "pd.Series[float]") -> str:
     """Pictures have no direction: the ends are named."""
-    where = f"{sentence_case(each.row.name)}: the" if each.row.kind == "comparison" else "The"
+    where = f"{sentence_case(each.row.compared)}: the" if each.row.kind == "comparison" else "The"
     return (
         f"{where} pictures differ, from {bottom['mean']:.2f} ({bottom['label']}) to {top['mean']:.2f} ({top['label']})."
     )
@@ -118,22 +120,6 @@ def pair_interval(each: Analysed, top: object, bottom: object) -> tuple[float, f
             low, high = float(pair["ci_low"]), float(pair["ci_high"])
             return (low, high) if pair["a"] == top else (-high, -low)
     return 0.0, 0.0
-
-
-def nothing_sentence(rest: list[Analysed], plan: AnalysisPlan) -> str:
-    """Absence of a finding, with what the ratings still allow."""
-    if not rest:
-        return ""
-    tables = [each.tukey for each in rest if each.tukey is not None]
-    bent = [each.row.name for each in rest if each.row.kind == "interaction"]
-    plain = [each.row.name for each in rest if each.row.kind != "interaction"]
-    names = [f"effect of {joined(plain)}"] if plain else []
-    names += [f"interaction {joined(bent)}"] if bent else []
-    said = f"No {' and no '.join(names)} was found. That is not evidence of none"
-    if not tables:
-        return f"{said}."
-    widest = max(table[["ci_low", "ci_high"]].abs().to_numpy().max() for table in tables)
-    return f"{said}: differences of up to {widest:.2f} remain inside the {plan.confidence:.0%} intervals."
 
 
 def apa_statistic(each: Analysed, plan: AnalysisPlan) -> str:
@@ -163,11 +149,12 @@ def apa_sentence(each: Analysed, plan: AnalysisPlan) -> str:
     ]
     if len(cells) > LISTED:
         cells = [f"{len(cells)} means in tables/means.csv"]
-    where = f" ({each.row.name})" if each.row.kind == "comparison" else ""
+    where = f" ({each.row.compared})" if each.row.kind == "comparison" else ""
+    best = " The best own picture was picked by the same ratings, which flatters its mean."
     return (
         f"A {design(each)}{corrected} with {people(each)} showed {verdict} "
         f"{kind}{what.get(each.row.kind, 'effect of picture')} on ratings of “{each.row.question}”{where}, "
-        f"{apa_statistic(each, plan)} ({'; '.join(cells)})."
+        f"{apa_statistic(each, plan)} ({'; '.join(cells)}).{best if each.row.picked_best else ''}"
     )
 
 

@@ -70,6 +70,8 @@ def summary_of(table: pd.DataFrame) -> str:
     verb, are = ("stands", "is") if odd == 1 else ("stand", "are")
     which = f"all {are} analysed" if used == odd else f"{used} of them {'is' if used == 1 else 'are'} analysed"
     which = "and is analysed" if odd == used == 1 else which
+    if not used:
+        return f"Answer quality: {odd} of {people} {verb} out; {'none of them is' if odd > 1 else 'not'} analysed."
     return f"Answer quality: {odd} of {people} {verb} out; {which}, as only declared rules leave anybody out."
 
 

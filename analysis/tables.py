@@ -1,12 +1,12 @@
 """Tables for the page: every cell as it will be read."""
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 from analysis.families import family_words
 from analysis.plan import AnalysisPlan
 from analysis.results import METHODS, Analysed
-from analysis.wording import apa_df, exact_p, no_zero, thesis_hsd, thesis_p, thesis_verdict
+from analysis.wording import apa_df, exact_p, joined, no_zero, percent, thesis_hsd, thesis_p, thesis_verdict
 
 SHORT = {"holm": "Holm", "fdr": "BH"}
 SHOWN_LEVELS = 8  # more samples make more pairs than a page should hold: those stand in tables/tukey.csv
@@ -22,6 +22,21 @@ class Table:
     rows: tuple[tuple[str, ...], ...]
     text_columns: int = 1
     note: str = ""
+
+
+def told_once(table: Table, *names: str) -> Table:
+    """`table` with those of the named columns that are the same in all rows said in its note instead."""
+    same = [name for name in names if len({row[table.head.index(name)] for row in table.rows}) == 1]
+    places = [table.head.index(name) for name in same]
+    values = joined([f"{name} = {table.rows[0][place]}" for name, place in zip(same, places, strict=True)])
+    kept = [place for place in range(len(table.head)) if place not in places]
+    everywhere = f"In every row {values}." if same else ""
+    return replace(
+        table,
+        head=tuple(table.head[place] for place in kept),
+        rows=tuple(tuple(row[place] for place in kept) for row in table.rows),
+        note=" ".join(filter(None, (everywhere, table.note))),
+    )
 
 
 def table_4_4(found: Sequence[Analysed], plan: AnalysisPlan) -> Table:
@@ -46,7 +61,7 @@ def table_4_4(found: Sequence[Analysed], plan: AnalysisPlan) -> Table:
         )
     return Table(
         f"table-4-4-{mode}",
-        f"Table 4.4. Results of the one-way ANOVA, {METHODS[mode]} (significance level {plan.alpha:.0%})",
+        f"Table 4.4. Results of the one-way ANOVA, {METHODS[mode]} (significance level {percent(plan.alpha)})",
         ("Configuration", "p-value", "F", "df", "n", "MSE", "p, unrounded"),
         tuple(rows),
         note="p as the thesis's table 4.4 gives it: without correction for sphericity or for the number of tests.",
@@ -76,14 +91,14 @@ def table_4_5(each: Analysed) -> Table:
         for pair in each.tukey.to_dict("records")
     ]
     means = dict(zip(each.means["level"], each.means["mean"], strict=True))
-    samples = "; ".join(f"{level.code} {level.label} ({means[level.code]:.2f})" for level in each.row.levels)
+    samples = "; ".join(f"{level.code} {level.printed} ({means[level.code]:.2f})" for level in each.row.levels)
     first = each.tukey.iloc[0]
     note = f"Means: {samples}. n = {sizes_text(each.n)}, df = {first['df']}, MSE = {first['mse']:.3f}."
     if hsd:
         note += f" Unrounded HSD {hsd[0]:.4f} and {hsd[1]:.4f} decide."
     return Table(
         f"table-4-5-{each.mode}-{each.row.question}",
-        f"Table 4.5. Tukey HSD test of {each.row.name} on “{each.row.question}”, {METHODS[each.mode]} ({heading})",
+        f"Table 4.5. Tukey HSD test of {each.row.compared} on “{each.row.question}”, {METHODS[each.mode]} ({heading})",
         ("Samples", "P", "|difference|", "q", "p (Tukey)"),
         tuple(rows),
         text_columns=2,
@@ -95,10 +110,10 @@ def table_of_tests(found: Sequence[Analysed], plan: AnalysisPlan) -> Table:
     """The test that fits the design: corrected for sphericity, adjusted over the declared family, with effect size."""
     tested = [each for each in found if each.p is not None]
     note = f"p Holm and p BH (Benjamini–Hochberg): adjusted over {family_words(plan, found)}. {decides(plan)}"
-    head: tuple[str, ...] = ("Configuration", "F", "df", "p", "p Holm", "p BH", "η² [90% CI]")
+    head: tuple[str, ...] = ("Configuration", "F", "df", "n", "p", "p Holm", "p BH", "η² [90% CI]")
     caption = "One-way ANOVA of independent samples"
     if found and found[0].mode == "repeated":
-        head = ("Configuration", "F", "df", "p", "p Holm", "p BH", "η²G [90% CI]", "ε GG, HF")
+        head = ("Configuration", "F", "df", "n", "p", "p Holm", "p BH", "η²G [90% CI]", "ε GG, HF")
         note = (
             "df and p are Greenhouse–Geisser corrected; the ε of Huynh–Feldt for comparison. η²G: generalized eta "
             f"squared. {note}"
@@ -106,7 +121,7 @@ def table_of_tests(found: Sequence[Analysed], plan: AnalysisPlan) -> Table:
         crossed = any(each.row.crossed for each in found)
         caption = "Factorial repeated-measures ANOVA" if crossed else "Repeated-measures ANOVA"
     rows = tuple(map(test_cells, tested))
-    return Table("table-tests", f"{caption}, corrected, with effect sizes", head, rows, note=note)
+    return told_once(Table("table-tests", f"{caption}, corrected, with effect sizes", head, rows, note=note), "n")
 
 
 def decides(plan: AnalysisPlan) -> str:
@@ -124,7 +139,7 @@ def test_cells(each: Analysed) -> tuple[str, ...]:
     shrink = [no_zero(each.anova[name], 3) for name in ("epsilon_gg", "epsilon_hf")] if repeated else []
     epsilons = (", ".join(shrink),) if repeated else ()
     tail = (thesis_p(each.p), *adjusted, f"{no_zero(size, 3)} [{no_zero(low, 3)}, {no_zero(high, 3)}]")
-    return (each.row.title, f"{each.anova['F']:.2f}", f"{df1}, {df2}", *tail, *epsilons)
+    return (each.row.title, f"{each.anova['F']:.2f}", f"{df1}, {df2}", sizes_text(each.n), *tail, *epsilons)
 
 
 def tables_of_ranks(found: Sequence[Analysed]) -> list[Table]:
@@ -156,7 +171,7 @@ def pair_name(each: Analysed) -> str:
     """The two samples that were rated, of which the second is subtracted."""
     assert each.means is not None
     rated = set(each.means["level"])
-    return " minus ".join(level.label for level in each.row.levels if level.code in rated)
+    return " minus ".join(level.printed for level in each.row.levels if level.code in rated)
 
 
 def table_of_friedman(found: Sequence[Analysed]) -> Table | None:
@@ -166,11 +181,13 @@ def table_of_friedman(found: Sequence[Analysed]) -> Table | None:
             each.row.title,
             f"{each.friedman['chi2']:.2f}",
             f"{each.friedman['df']:.0f}",
+            f"{each.friedman['n']:.0f}",
             thesis_p(each.friedman["p"]),
             no_zero(each.friedman["kendalls_w"], 3),
         )
         for each in found
         if each.friedman is not None
     )
-    head = ("Configuration", "χ²", "df", "p", "Kendall W")
-    return Table("table-ranks", "Friedman's test: ranks instead of means", head, rows) if rows else None
+    head = ("Configuration", "χ²", "df", "n", "p", "Kendall W")
+    table = Table("table-ranks", "Friedman's test: ranks instead of means", head, rows)
+    return told_once(table, "n") if rows else None

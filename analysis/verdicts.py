@@ -4,7 +4,7 @@ from collections.abc import Iterator, Sequence
 
 from analysis.models import Modelled
 from analysis.results import Analysed
-from analysis.wording import joined
+from analysis.wording import joined, percent
 
 NAMES = {"anova": "ANOVA", "ranks": "ranks", "ordinal": "ordinal regression", "mixed": "mixed model"}
 
@@ -44,8 +44,9 @@ def finds(names: list[str]) -> str:
     return "finds" if len(names) == 1 and names != [NAMES["ranks"]] else "find"
 
 
-def agreement_of_tests(models: Sequence[Modelled], alpha: float) -> str:
-    """One sentence: in how many rows all tests say the same, and who stands apart where they do not."""
+def agreement_of_tests(models: Sequence[Modelled], alpha: float, *, adjusted: bool = False) -> str:
+    """One sentence: in how many rows all tests say the same, and who stands apart where they do not. `adjusted`: other
+    words of the report follow an adjusted p, so that these do not is said."""
     compared = [(each, p) for each, p in tested_rows(models) if len(p) > 1]
     if not compared:
         return ""
@@ -55,7 +56,7 @@ def agreement_of_tests(models: Sequence[Modelled], alpha: float) -> str:
         for each, p in compared
         if len({value < alpha for value in p.values()}) > 1
     ]
-    head = f"At the {alpha:.0%} level {names}"
+    head = f"At the {percent(alpha)} level{', each p unadjusted,' if adjusted else ''} {names}"
     if not apart:
         rows = {1: "the only row", 2: "both rows"}.get(len(compared), f"all {len(compared)} rows")
         return f"{head} agree in {rows}{lacking(compared)}."

@@ -1,6 +1,7 @@
 """Numbers as the thesis prints them, and as the APA's manual does."""
 
 import math
+import re
 from typing import Any
 
 
@@ -55,6 +56,21 @@ def signed(value: float, places: int = 2) -> str:
     """With a true minus sign; never "-0.00"."""
     text = f"{value:.{places}f}"
     return text.lstrip("-") if float(text) == 0 else text.replace("-", "−")
+
+
+def percent(share: float) -> str:
+    """A share that was declared (a level, a bound), with every digit of it: 5%, 99.5%, 0.5%."""
+    return f"{100 * share:.10g}%"
+
+
+def steps(margin: float) -> str:
+    """±1 step, ±0.5 steps."""
+    return f"±{margin:g} step{'' if margin == 1 else 's'}"
+
+
+def true_minus(text: str) -> str:
+    """A label as it is printed: a true minus before numbers ("−35"), other hyphens ("img-35") as they are."""
+    return re.sub(r"(?<![\w.])-(?=\.?\d)", "−", text)
 
 
 def sentence_case(text: str) -> str:

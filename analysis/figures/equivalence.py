@@ -13,7 +13,7 @@ from analysis.figures.style import COLOURS, FAINT, INK, STYLE, THUMBNAIL, Drawin
 from analysis.margins import Judged
 from analysis.statistics.equivalence import UNTESTED
 from analysis.study import StudyInfo
-from analysis.wording import sentence_case
+from analysis.wording import percent, sentence_case, steps
 
 # colour and shape both tell the verdict: in grey print and to every eye
 MARKS = {
@@ -57,12 +57,12 @@ def forest(part: Sequence[Judged], study: StudyInfo, number: int) -> Drawing:
         limit = 1.08 * max(reach(one) for one in part)
         grid[-1].set_xlim(-limit, limit)
         question = study.question(part[0].each.row.question)
-        grid[-1].set_xlabel(f"difference of ratings of “{question.name}” (band: margin of ±{part[0].margin:g} steps)")
+        grid[-1].set_xlabel(f"difference of ratings of “{question.name}” (band: margin of {steps(part[0].margin)})")
         level = 1 - 2 * part[0].alpha
         caption = (
-            f"Are they rated alike? {sentence_case(question.name)}: differences with {level:.0%} confidence intervals. "
-            f"Band: the margin of ±{part[0].margin:g} declared before the data. Equivalent (blue disc): the interval "
-            "lies inside the band. Different (square): the two-sided test says so. Both (diamond): a difference "
+            f"Are they rated alike? {sentence_case(question.name)}: differences with {percent(level)} confidence "
+            f"intervals. Band: the margin of ±{part[0].margin:g} declared before the data. Equivalent (blue disc): the "
+            "interval lies inside the band. Different (square): the two-sided test says so. Both (diamond): a difference "
             "smaller than matters. Undecided (open circle): too few answers to say either."
         )
         return drawn(figure, f"figure-equivalence-{number}", caption)

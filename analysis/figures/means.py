@@ -13,7 +13,7 @@ from analysis.figures.style import COLOURS, STYLE, Drawing, drawn, folded, place
 from analysis.results import Analysed
 from analysis.sentences import ordered_means
 from analysis.study import Question, StudyInfo
-from analysis.wording import sentence_case
+from analysis.wording import percent, sentence_case
 
 ACROSS = 3
 """Questions beside each other in a figure: more would be too small on a page."""
@@ -27,7 +27,7 @@ DISCS = 60
 def interval_name(mode: str, confidence: float) -> str:
     """The kind of interval, for captions."""
     kind = "within-subject (Cousineau–Morey)" if mode == "repeated" else "between-subject"
-    return f"{confidence:.0%} {kind} confidence interval"
+    return f"{percent(confidence)} {kind} confidence interval"
 
 
 def factor_figures(study: StudyInfo, found: Sequence[Analysed], confidence: float) -> list[Drawing]:

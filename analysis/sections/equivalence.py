@@ -1,7 +1,7 @@
 """Are pictures rated alike? Two one-sided tests against the declared margin; without a margin no such claim is made."""
 
 from collections import Counter
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from typing import Any
 
 from analysis.evidence import Evidence
@@ -11,18 +11,11 @@ from analysis.plan import EquivalencePlan
 from analysis.section import Section, rendered
 from analysis.statistics.equivalence import UNTESTED
 from analysis.statistics.equivalence_power import people_for_equivalence
-from analysis.tables import Table
-from analysis.wording import apa_df, apa_p, counted, joined, sentence_case, signed, thesis_p
+from analysis.tables import Table, sizes_text, told_once
+from analysis.wording import apa_df, apa_p, counted, joined, percent, sentence_case, signed, steps, thesis_p
 
 NAMED = 3  # pairs that a sentence names; more are counted
 PASTED = 10  # pairs that a sentence to paste holds
-WORDS = {
-    "equivalent": "alike",
-    "both": "different by less than the margin",
-    "different": "different",
-    "undecided": "undecided",
-    UNTESTED: "without a test",
-}
 
 
 def equivalence(evidence: Evidence) -> Section | None:
@@ -36,7 +29,7 @@ def equivalence(evidence: Evidence) -> Section | None:
         "equivalence",
         margins=margins(judged),
         alpha=plan.alpha,
-        level=1 - 2 * plan.alpha,
+        level=percent(1 - 2 * plan.alpha),
         table=table_of_equivalence(judged, plan),
         drawings=drawings,
         people=people_needed(judged),
@@ -51,8 +44,8 @@ def margins(judged: Sequence[Judged]) -> str:
     """The margin of every question, in words."""
     by_question = {one.each.row.question: one.margin for one in judged}
     if len(set(by_question.values())) == 1:
-        return f"±{next(iter(by_question.values())):g} steps of the scale"
-    return joined([f"±{margin:g} steps for “{question}”" for question, margin in by_question.items()])
+        return f"{steps(next(iter(by_question.values())))} of the scale"
+    return joined([f"{steps(margin)} for “{question}”" for question, margin in by_question.items()])
 
 
 def summaries(judged: Sequence[Judged]) -> tuple[str, ...]:
@@ -60,19 +53,38 @@ def summaries(judged: Sequence[Judged]) -> tuple[str, ...]:
     said = []
     for question, margin in dict.fromkeys((one.each.row.question, one.margin) for one in judged):
         mine = [(one, pair) for one in judged if one.each.row.question == question for pair in one.records]
-        count = Counter(str(pair["verdict"]) for _, pair in mine)
-        parts = [f"{count[verdict]} {words}" for verdict, words in WORDS.items() if count[verdict]]
-        alike = [one.named(pair) for one, pair in mine if pair["verdict"] in ("equivalent", "both")]
-        names = f" Alike: {joined([name.replace(' minus ', ' and ') for name in alike])}." if alike else ""
-        if not alike:
-            names = " No pair was shown to be alike."
-        elif len(alike) > NAMED:
-            names = ""
         said.append(
-            f"{sentence_case(question)}: of {counted(len(mine), 'pair')}, {joined(parts)} by a margin of "
-            f"±{margin:g} steps.{names}"
+            f"{sentence_case(question)}, margin {steps(margin)}: of {counted(len(mine), 'pair')} "
+            f"{'; '.join(verdicts(Counter(str(pair['verdict']) for _, pair in mine)))}.{alike_by_name(mine)}"
         )
     return tuple(said)
+
+
+def verdicts(count: Mapping[str, int]) -> list[str]:
+    """How many pairs are alike, different and neither: each pair in one of them."""
+    alike, both = count["equivalent"] + count["both"], count["both"]
+    smaller = f" ({both} of them with a difference, smaller than the margin)" if both else ""
+    found = [
+        (alike, f"alike{smaller}"),
+        (count["different"], "different, perhaps by as much as the margin"),
+        (count["undecided"], "undecided"),
+        (count[UNTESTED], "without a test"),
+    ]
+    return [f"{n} {words}" for n, words in found if n]
+
+
+def alike_by_name(mine: Sequence[tuple[Judged, dict[str, Any]]]) -> str:
+    """Alike: backlight 1.2 and 0.8; diffuse weight 0.2 and 0.5. Empty where they are many."""
+    found = [(one, pair) for one, pair in mine if pair["verdict"] in ("equivalent", "both")]
+    if not found:
+        return " No pair was shown to be alike."
+    named = [f"{of_factor(one)}{one.labels[pair['a']]} and {one.labels[pair['b']]}" for one, pair in found]
+    return f" Alike: {'; '.join(named)}." if len(found) <= NAMED else ""
+
+
+def of_factor(one: Judged) -> str:
+    """What a level is a level of; pictures need no more than their names."""
+    return f"{one.each.row.name} " if one.each.row.kind == "factor" else ""
 
 
 def people_needed(judged: Sequence[Judged]) -> list[str]:
@@ -98,24 +110,31 @@ def table_of_equivalence(judged: Sequence[Judged], plan: EquivalencePlan) -> Tab
         if one.shown
         for place, pair in enumerate(one.records)
     ]
-    interval = f"{1 - 2 * plan.alpha:.0%} CI"
-    head = ("Configuration", "Pair", "Verdict", "Difference", interval, "p TOST", "Holm", "p diff.")
+    interval = f"{percent(1 - 2 * plan.alpha)} CI"
+    head = ("Configuration", "Pair", "Verdict", "Difference", interval, "df", "n", "p TOST", "Holm", "p diff.")
     note = (
         "p TOST: the larger of the two one-sided tests; it decides with p diff., the two-sided t test, each at "
         f"α = {plan.alpha:g}. Holm: p TOST adjusted for the number of pairs of the row. One pair chosen after seeing "
         "all needs the adjusted p; the claim that all pairs of a row are alike does not."
     )
     caption = "Two one-sided tests of every pair"
-    return Table("table-equivalence", caption, head, tuple(rows), text_columns=3, note=note) if rows else None
+    table = Table("table-equivalence", caption, head, tuple(rows), text_columns=3, note=note)
+    return told_once(table, "df", "n") if rows else None
 
 
 def cells(pair: dict[str, Any]) -> tuple[str, ...]:
     """The numbers of one pair; dashes where it has no test."""
-    difference = signed(pair["difference"])
+    difference, n = signed(pair["difference"]), sizes_text((pair["n_a"], pair["n_b"]))
     if pair["verdict"] == UNTESTED:
-        return (difference, *["–"] * 4)
+        return (difference, "–", "–", n, *["–"] * 3)
     interval = f"[{signed(pair['ci_low'])}, {signed(pair['ci_high'])}]"
-    return (difference, interval, *(thesis_p(pair[p]) for p in ("p_equivalence", "p_equivalence_holm", "p_difference")))
+    return (
+        difference,
+        interval,
+        apa_df(pair["df"]),
+        n,
+        *(thesis_p(pair[p]) for p in ("p_equivalence", "p_equivalence_holm", "p_difference")),
+    )
 
 
 def apa_equivalence(one: Judged) -> str:
@@ -125,11 +144,11 @@ def apa_equivalence(one: Judged) -> str:
     people = f"n = {first['n_a']}, " if one.each.mode == "repeated" else ""
     tested = [pair for pair in one.records if pair["verdict"] != UNTESTED]
     pasted = tested if len(tested) <= PASTED else [p for p in tested if p["verdict"] in ("equivalent", "both")]
-    level = f"{1 - 2 * one.alpha:.0%} CI"
+    level = f"{percent(1 - 2 * one.alpha)} CI"
     parts = [f"{one.named(pair)}: {apa_pair(pair, level)}" for pair in pasted]
     if len(pasted) < len(tested):
         parts.append(f"the other {len(tested) - len(pasted)} pairs were not shown to be equivalent")
-    where = f" ({row.name})" if row.kind == "comparison" else f" by {row.name}"
+    where = f" ({row.compared})" if row.kind == "comparison" else f" by {row.name}"
     return (
         f"Two one-sided {kind} t tests ({people}margin ±{one.margin:g}, α = {one.alpha:g}, "
         f"{counted(len(tested), 'pair')}, p unadjusted) of ratings of “{row.question}”{where}: {'; '.join(parts)}."

@@ -13,7 +13,7 @@ from analysis.results import METHODS, Analysed
 from analysis.section import Section, rendered
 from analysis.tables import SHOWN_LEVELS
 from analysis.verdicts import agreement_of_tests
-from analysis.wording import apa_p, counted, joined, signed
+from analysis.wording import apa_p, counted, joined, percent, signed, true_minus
 
 ENOUGH = 40  # people; with 20 the clustered test found an effect that was not there in 9 % (docs/calibration.md)
 KINDS = {"ordinal": "Ordinal regression", "mixed": "Mixed model"}
@@ -22,7 +22,7 @@ KINDS = {"ordinal": "Ordinal regression", "mixed": "Mixed model"}
 def models(evidence: Evidence) -> Section | None:
     """Every model that the plan asks for, and the verdict of all tests side by side."""
     fitted, plan = models_of(evidence), evidence.plan
-    agreement = agreement_of_tests(fitted, plan.alpha)
+    agreement = agreement_of_tests(fitted, plan.alpha, adjusted=plan.adjust != "none")
     shares, no_shares = variance_of(evidence)
     tables = {
         "ordinal": ordinal_table(fitted),
@@ -154,7 +154,7 @@ def apa_ordinal(model: Modelled, each: Analysed, test: dict[str, Any], plan: Ana
     errors = f"participant-clustered standard errors, {counted(fit.clusters, 'participant')}, " if fit.clusters else ""
     verdict = "a significant effect" if test["p"] < plan.alpha else "no significant effect"
     what = "picture" if each.row.kind in ("comparison", "all") else each.row.name
-    where = f" ({each.row.name})" if each.row.kind == "comparison" else ""
+    where = f" ({each.row.compared})" if each.row.kind == "comparison" else ""
     return (
         f"A proportional odds regression ({errors}{counted(fit.n, 'rating')}) showed {verdict} of {what} on ratings of "
         f"“{each.row.question}”{where}, χ²({test['df']}) = {test['chi2']:.2f}, {apa_p(test['p'])}"
@@ -168,8 +168,8 @@ def odds_in_words(odds: pd.DataFrame, factor: str, confidence: float) -> str:
     if mine.empty or len(mine) >= SHOWN_LEVELS:
         return ""
     cells = [
-        f"{row['level']}: OR = {signed(row['odds_ratio'])}, {confidence:.0%} CI [{signed(row['ci_low'])}, "
-        f"{signed(row['ci_high'])}]"
+        f"{true_minus(str(row['level']))}: OR = {signed(row['odds_ratio'])}, {percent(confidence)} CI "
+        f"[{signed(row['ci_low'])}, {signed(row['ci_high'])}]"
         for row in mine.to_dict("records")
     ]
-    return f" (against {mine['against'].iloc[0]}: {'; '.join(cells)})"
+    return f" (against {true_minus(str(mine['against'].iloc[0]))}: {'; '.join(cells)})"

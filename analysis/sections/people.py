@@ -12,7 +12,7 @@ from analysis.sample import Sample
 from analysis.section import Section, rendered
 from analysis.standing_out import summary_of, table_of_those, with_reasons
 from analysis.tables import Table
-from analysis.wording import joined
+from analysis.wording import joined, percent
 
 LEFT_OUT = ("participant", "rule", "reason")
 
@@ -77,7 +77,7 @@ def declared_rules(plan: AnalysisPlan) -> dict[str, str]:
     if rules.median_rt_ms_below is not None:
         said["median_rt_ms_below"] = f"median answer time below {rules.median_rt_ms_below:g} ms"
     if rules.same_answer_share is not None:
-        said["same_answer_share"] = f"one answer in {rules.same_answer_share:.0%} or more of the ratings"
+        said["same_answer_share"] = f"one answer in {percent(rules.same_answer_share)} or more of the ratings"
     return said
 
 
