@@ -22,7 +22,7 @@ def small_study(folder: Path, labels: str = "") -> Path:
         stimulus(place, role="factor", rows=[name], label=f"{labels}{name} {level}", factors={name: level})
         for place, (name, level) in enumerate(cells, 1)
     ]
-    return write_manifest(folder / "study", entries, {})
+    return write_manifest(folder / "study", entries, {"tests": ["ranks"]})
 
 
 def answers(people: int = 12, questions: tuple[str, ...] = ("translucent", "realistic", "varnished")) -> str:

@@ -181,7 +181,7 @@ def test_a_factorial_is_averaged_over_the_other_factors(csv_of: Callable[[str], 
         )
         for name, (exponent, light) in levels.items()
     ]  # fmt: skip
-    manifest = write_manifest(tmp_path / "study", stimuli, {})
+    manifest = write_manifest(tmp_path / "study", stimuli, {"tests": []})
     rules = {name: (lambda who, i=i: 1 + (3 * who * who + 2 * i) % 7) for i, name in enumerate(levels)}
     path = csv_of(ratings_of(rules, 9))
     results = write_report(path, tmp_path / "out", manifest=manifest)
@@ -211,7 +211,7 @@ def test_ratings_of_another_study(thesis_manifest: Path, csv_of: Callable[[str],
 
 def test_compared_pictures_without_a_declared_comparison(tmp_path: Path) -> None:
     """Pictures of other origin are compared with our best on every question."""
-    manifest = write_manifest(tmp_path / "study", thesis_stimuli(), {})
+    manifest = write_manifest(tmp_path / "study", thesis_stimuli(), {"tests": []})
     rated = some_pictures(tmp_path, "img03", "img10", "img11")
     results = write_report(rated, tmp_path / "out", manifest=manifest)
     names = {row["factor"] for row in results["anova"]}
