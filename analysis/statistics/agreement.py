@@ -2,7 +2,7 @@
 
 import warnings
 from dataclasses import dataclass
-from typing import Literal
+from typing import Literal, get_args
 
 import krippendorff
 import numpy as np
@@ -11,9 +11,12 @@ import pandas as pd
 import pingouin
 from pandas.errors import Pandas4Warning
 
-from analysis.statistics.undefined import Undefined, complete_table, require_columns
+from analysis.statistics.undefined import Undefined, complete_table, not_zero, refuse_doubled, require_columns
+from fakesss.problem import BadInput, nearest
 
 FEWEST = 5  # ratings; pingouin stops below
+Level = Literal["nominal", "ordinal", "interval", "ratio"]
+LEVELS: tuple[Level, ...] = get_args(Level)
 MOST = 10**8  # numbers that krippendorff holds at once (pictures x values x values): 0.8 GB
 
 
@@ -50,6 +53,7 @@ class IntraclassCorrelation:
         table = found[list(names)].rename(columns=names)
         table.insert(2, "ci_low", np.array(low, dtype=float))
         table.insert(3, "ci_high", np.array(high, dtype=float))
+        table["p"] = not_zero(table["p"])
         return table.assign(n_targets=wide.shape[1], n_raters=wide.shape[0], dropped="; ".join(dropped))
 
 
@@ -73,28 +77,39 @@ class KrippendorffAlpha:
     """Krippendorff's alpha with a bootstrap interval over the pictures; missing ratings are allowed.
 
     Returns one row: `alpha, ci_low, ci_high` (95%, percentile), `level, n_targets, n_raters`. `seed` fixes the
-    bootstrap. Agrees with R `irr::kripp.alpha`. Krippendorff (2011). Raises `Undefined` where fewer than two raters
-    share a picture, where all ratings are equal, and where there are more different ratings than the library can hold
-    (more than 447 on 500 pictures).
+    bootstrap; `n_raters` counts who rated a picture that somebody else rated too, `n_targets` such pictures. Agrees
+    with R `irr::kripp.alpha`. Krippendorff (2011). Raises `Undefined` where fewer than two pictures are shared by two
+    raters (of one picture alpha is 0 whatever they answer), where all ratings are equal, and where there are more
+    different ratings than the library can hold (more than 447 on 500 pictures); `BadInput` for a doubled cell.
     """
 
     value: str
     target: str
     rater: str
-    level: Literal["nominal", "ordinal", "interval", "ratio"] = "ordinal"
+    level: Level = "ordinal"
     resamples: int = 1000
     seed: int = 0
 
     def __call__(self, frame: pd.DataFrame) -> pd.DataFrame:
         """The row for a long `frame`, one row per rating."""
         require_columns(frame, self.value, self.target, self.rater)
-        wide = frame.pivot(index=self.rater, columns=self.target, values=self.value).astype(float)
-        data = wide.loc[:, wide.notna().sum() > 1].to_numpy()
+        if self.level not in LEVELS:
+            raise BadInput(f'level: "{self.level}": {nearest(self.level, LEVELS)}')
+        present = frame.dropna(subset=[self.value, self.target, self.rater])
+        refuse_doubled(present, self.rater, self.target)
+        wide = present.pivot(index=self.rater, columns=self.target, values=self.value).astype(float)
+        shared = wide.loc[:, wide.notna().sum() > 1].dropna(how="all")
+        data = shared.to_numpy()
         where = f"{self.value} by {self.target}"
         if data.size == 0:
             raise Undefined(f"{where}: no {self.target} was rated by two {self.rater}s, so agreement has no value")
         if np.nanmin(data) == np.nanmax(data):
             raise Undefined(f"{where}: all ratings are equal, so agreement has no value")
+        if data.shape[1] < 2:
+            raise Undefined(
+                f"{where}: one {self.target} was rated by several {self.rater}s; Krippendorff's alpha compares "
+                f"disagreement within {self.target}s with that between them, and needs two"
+            )
         values = np.unique(data[~np.isnan(data)])
         if data.shape[1] * len(values) ** 2 > MOST:
             raise Undefined(

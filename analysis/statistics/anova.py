@@ -11,7 +11,7 @@ from scipy import stats
 from statsmodels.stats.anova import AnovaRM
 
 from analysis.statistics.effect_size import eta_squared_interval
-from analysis.statistics.undefined import Undefined, complete_table, groups_of, not_zero, residuals
+from analysis.statistics.undefined import Floats, Undefined, complete_table, groups_of, not_zero, residuals
 
 EFFECT_LEVEL = 0.90  # the interval that excludes 0 exactly when a one-sided F test at .05 is significant
 ROUNDING = 1e-12  # a residual this small against the total is what float64 leaves of an exact zero
@@ -51,10 +51,11 @@ class RepeatedMeasuresAnova:
     """One-way repeated-measures analysis of variance with Greenhouse-Geisser and Huynh-Feldt corrections.
 
     Returns one row: `F, df1, df2, p` (uncorrected), `ss_effect, ss_subject, ss_error, ms_error, epsilon_gg, p_gg,
-    epsilon_hf, p_hf, mauchly_w, mauchly_p` (NaN for two levels, and where there are no more people than levels: the
-    test has no meaning), `partial_eta_squared, partial_ci_low, partial_ci_high, generalized_eta_squared, ci_low,
-    ci_high` (90% intervals), `n`, `k`, `dropped` (participants without a value at every level, "; " between). Agrees
-    with R `afex::aov_ez(subject, value, within = within)`. Raises `Undefined` where F has no value.
+    epsilon_hf, p_hf, mauchly_w, mauchly_p` (NaN for two levels, where there are no more people than levels, and where
+    some comparison of levels is the same in everyone: the test has no meaning), `partial_eta_squared, partial_ci_low,
+    partial_ci_high, generalized_eta_squared, ci_low, ci_high` (90% intervals), `n`, `k`, `dropped` (participants
+    without a value at every level, "; " between). Agrees with R `afex::aov_ez(subject, value, within = within)`. Raises
+    `Undefined` where F has no value.
     """
 
     value: str
@@ -127,10 +128,19 @@ def sphericity(wide: pd.DataFrame, effect: pd.Series) -> dict[str, float]:
     spare = len(wide) - 1 - df1 * gg
     hf = float(pingouin.epsilon(wide, correction="hf")) if spare > ROUNDING else 1.0
     w = p_mauchly = np.nan
-    if len(wide) > wide.shape[1]:
-        w, p_mauchly = float(effect["W_spher"]), float(effect["p_spher"])
+    if len(wide) > wide.shape[1] and not is_singular(wide.to_numpy(), float(effect["W_spher"])):
+        w, p_mauchly = float(effect["W_spher"]), not_zero(effect["p_spher"])
     corrected = {f"p_{name}": not_zero(stats.f.sf(f, df1 * e, df2 * e)) for name, e in (("gg", gg), ("hf", hf))}
     return {"epsilon_gg": gg, "epsilon_hf": hf, **corrected, "mauchly_w": w, "mauchly_p": p_mauchly}
+
+
+def is_singular(wide: Floats, w: float) -> bool:
+    """Whether some comparison of levels is the same in everyone, so that Mauchly's W is 0 whatever the others do."""
+    if w > ROUNDING * np.e:  # W is the product of variances over their mean: one of 0 makes it smaller
+        return False
+    left = residuals(wide)
+    variances = np.linalg.eigvalsh(left.T @ left)  # the smallest belongs to the mean of all levels
+    return bool(variances[1] <= ROUNDING * variances[-1])
 
 
 def effect_sizes(effect: float, subject: float, error: float, df1: int, df2: int) -> dict[str, float]:

@@ -10,7 +10,7 @@ from scipy import stats
 
 from analysis.statistics.effect_size import d_z_interval
 from analysis.statistics.multiplicity import adjusted
-from analysis.statistics.undefined import SMALLEST_P, Floats, complete_table
+from analysis.statistics.undefined import Floats, complete_table, not_zero, spreadless
 
 AT_ONCE = 512
 D_Z = ("d_z", "d_z_low", "d_z_high")
@@ -25,8 +25,8 @@ class PairedContrasts:
     "neighbours", a chain in the order of the levels; only pairs that are tested are counted in the adjustment.
     Returns a row per pair: `a, b, difference` (mean of a less mean of b), `ci_low, ci_high` (unadjusted), `t, df, p,
     p_holm, d_z` (mean difference over the standard deviation of differences), `d_z_low, d_z_high` (its interval), `n`.
-    A pair whose differences are all equal has NaN for `t, p, p_holm, d_z` and its limits, and is not counted in the
-    adjustment. Agrees with R `pairwise.t.test(paired = TRUE, p.adjust.method = "holm")`.
+    A pair whose differences are all equal (but for rounding) has NaN for `t, p, p_holm, d_z` and its limits, and is not
+    counted in the adjustment. Agrees with R `pairwise.t.test(paired = TRUE, p.adjust.method = "holm")`.
     """
 
     value: str
@@ -56,21 +56,20 @@ class PairedContrasts:
         # a column for each pair, few at once: the differences of all would be many times as large as the ratings
         pieces = -(-len(first) // AT_ONCE)
         parts = [
-            self.tests_of(wide[:, a] - wide[:, b])
+            self.tests_of(wide[:, a] - wide[:, b], spreadless(wide[:, a] - wide[:, b], wide))
             for a, b in zip(np.array_split(first, pieces), np.array_split(second, pieces), strict=True)
         ]
         return {name: np.concatenate([part[name] for part in parts]) for name in parts[0]}
 
-    def tests_of(self, differences: Floats) -> dict[str, Floats]:
-        """One-sample t tests of each column against 0, not yet adjusted."""
+    def tests_of(self, differences: Floats, equal: npt.NDArray[np.bool_]) -> dict[str, Floats]:
+        """One-sample t tests of each column against 0, not yet adjusted. `equal`: columns without spread."""
         mean, n = differences.mean(axis=0), len(differences)
-        equal = np.ptp(differences, axis=0) == 0
         # a column without spread has no test; any spread keeps the library from warning of it
         varied = np.where(equal, np.arange(n)[:, None], differences) if equal.any() else differences
         found = stats.ttest_1samp(varied, 0.0, axis=0)
         interval = found.confidence_interval(self.confidence)
         d_z = mean / varied.std(axis=0, ddof=1)
-        undefined = {"t": found.statistic, "p": np.maximum(found.pvalue, SMALLEST_P)}
+        undefined = {"t": found.statistic, "p": not_zero(found.pvalue)}
         undefined |= dict(zip(D_Z, (d_z, *d_z_interval(d_z, n, self.confidence)), strict=True))
         limits = {"ci_low": interval.low, "ci_high": interval.high}
         return (

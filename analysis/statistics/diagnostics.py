@@ -6,10 +6,9 @@ import numpy as np
 import pandas as pd
 from scipy import stats
 
-from analysis.statistics.undefined import Floats, Undefined, complete_table, groups_of, residuals
+from analysis.statistics.undefined import Floats, Undefined, complete_table, groups_of, not_zero, residuals, spreadless
 
 LARGEST = 5000  # residuals; scipy's p of Shapiro and Wilk's test is not accurate for more
-ROUNDING = 1e-12  # a spread this small against the values is what float64 leaves of none
 
 
 @dataclass(frozen=True)
@@ -29,11 +28,11 @@ class Residuals:
     def __call__(self, frame: pd.DataFrame) -> pd.DataFrame:
         """The row for a long `frame`, one row per rating."""
         left = self.left(frame)
-        if left.size < 3 or np.ptp(left) <= ROUNDING * max(1.0, float(np.abs(frame[self.value]).max())):
+        if left.size < 3 or spreadless(left, frame[self.value].dropna().to_numpy(np.float64)):
             raise Undefined(f"{self.value} by {self.group}: no residual is left whose shape could be described")
         w, p = stats.shapiro(left) if left.size <= LARGEST else (np.nan, np.nan)
         row = {"skewness": float(stats.skew(left)), "kurtosis": float(stats.kurtosis(left))}
-        return pd.DataFrame([{**row, "shapiro_w": float(w), "shapiro_p": float(p), "n": left.size}])
+        return pd.DataFrame([{**row, "shapiro_w": float(w), "shapiro_p": not_zero(p), "n": left.size}])
 
     def left(self, frame: pd.DataFrame) -> Floats:
         """All residuals."""
@@ -59,7 +58,7 @@ class EqualSpread:
         """The row for a long `frame`, one row per rating."""
         parts = list(groups_of(frame, self.value, self.group).values())
         distances = [np.abs(part - np.median(part)) for part in parts]
-        if all(np.ptp(part) <= ROUNDING * max(1.0, float(part.max())) for part in distances):
+        if all(spreadless(part, np.concatenate(parts)) for part in distances):
             raise Undefined(
                 f"{self.value} by {self.group}: no sample varies in its scatter, so Levene's test has no value"
             )
@@ -67,7 +66,7 @@ class EqualSpread:
         variances = [float(part.var(ddof=1)) for part in parts]
         ratio = max(variances) / min(variances) if min(variances) > 0 else np.inf
         df = {"df1": len(parts) - 1, "df2": sum(map(len, parts)) - len(parts)}
-        row = {"levene_w": float(found.statistic), **df, "p": float(found.pvalue), "variance_ratio": ratio}
+        row = {"levene_w": float(found.statistic), **df, "p": not_zero(found.pvalue), "variance_ratio": ratio}
         return pd.DataFrame([row])
 
 

@@ -1,6 +1,5 @@
 """Are two pictures rated alike? Two one-sided tests against a margin declared before the data."""
 
-import sys
 from dataclasses import dataclass
 from itertools import combinations
 
@@ -11,12 +10,19 @@ from statsmodels.stats.weightstats import ttost_ind, ttost_paired
 
 from analysis.labels import levels_of
 from analysis.statistics.multiplicity import adjusted
-from analysis.statistics.undefined import Floats, Undefined, complete_table, require_columns
+from analysis.statistics.undefined import (
+    Floats,
+    Undefined,
+    complete_table,
+    from_first,
+    not_zero,
+    require_columns,
+    spreadless,
+)
 from fakesss.problem import BadInput
 
 VERDICTS = {(True, False): "different", (False, True): "equivalent", (True, True): "both", (False, False): "undecided"}
 UNTESTED = "untested"
-SPREADLESS = 1e-12  # differences this much alike, against the largest value, are what float64 leaves of equal ones
 TESTED = (
     "ci_low", "ci_high", "df", "t_low", "p_low", "t_high", "p_high", "p_equivalence", "t_difference", "p_difference",
 )  # fmt: skip
@@ -55,7 +61,9 @@ class Equivalence:
         if not 0 < self.alpha < 0.5:
             raise BadInput(f"alpha: {self.alpha}: must lie between 0 and 0.5; 0.05 is usual")
         samples = self.samples(frame)
-        table = pd.DataFrame([self.pair(a, b, samples[a], samples[b]) for a, b in combinations(samples, 2)])
+        everything = np.concatenate(list(samples.values()))
+        rows = [self.pair(a, b, samples[a], samples[b], everything) for a, b in combinations(samples, 2)]
+        table = pd.DataFrame(rows)
         tested = table["reason"] == ""
         if not tested.any():
             raise Undefined(f"{self.value} by {self.within}: {table['reason'].iloc[0]}")
@@ -74,13 +82,13 @@ class Equivalence:
             raise Undefined(
                 f"{self.value} by {self.within}: {len(levels)} level with ratings; a comparison needs at least two"
             )
-        centred = present[self.value].astype(float) - float(present[self.value].iloc[0])
-        return {level: np.asarray(centred[present[self.within] == level], dtype=np.float64) for level in levels}
+        centred = from_first(present[self.value].to_numpy(np.float64))
+        return {level: centred[(present[self.within] == level).to_numpy()] for level in levels}
 
-    def pair(self, a: object, b: object, of_a: Floats, of_b: Floats) -> dict[str, object]:
+    def pair(self, a: object, b: object, of_a: Floats, of_b: Floats, everything: Floats) -> dict[str, object]:
         """The row of one pair, not yet adjusted."""
         head = {"a": a, "b": b, "difference": float(of_a.mean() - of_b.mean()), "n_a": len(of_a), "n_b": len(of_b)}
-        reason = self.hindrance(a, b, of_a, of_b)
+        reason = self.hindrance(a, b, of_a, of_b, everything)
         if reason:
             return {**head, **dict.fromkeys(TESTED, np.nan), "verdict": UNTESTED, "reason": reason}
         if self.subject is not None:
@@ -90,25 +98,23 @@ class Equivalence:
             _, low, high = ttost_ind(of_a, of_b, -self.margin, self.margin, usevar="unequal")
             plain = stats.ttest_ind(of_a, of_b, equal_var=False)
         interval = plain.confidence_interval(1 - 2 * self.alpha)
-        # an underflow to 0 is a bound, not a probability
-        p_low, p_high, p_plain = (max(float(p), sys.float_info.min) for p in (low[1], high[1], plain.pvalue))
+        p_low, p_high, p_plain = (not_zero(p) for p in (low[1], high[1], plain.pvalue))
         different, alike = p_plain < self.alpha, max(p_low, p_high) < self.alpha
         row = {"ci_low": float(interval.low), "ci_high": float(interval.high), "df": float(plain.df)}
         row |= {"t_low": float(low[0]), "p_low": p_low, "t_high": float(high[0]), "p_high": p_high}
         row |= {"p_equivalence": max(p_low, p_high), "t_difference": float(plain.statistic), "p_difference": p_plain}
         return {**head, **row, "verdict": VERDICTS[different, alike], "reason": ""}
 
-    def hindrance(self, a: object, b: object, of_a: Floats, of_b: Floats) -> str:
+    def hindrance(self, a: object, b: object, of_a: Floats, of_b: Floats, everything: Floats) -> str:
         """Why this pair cannot be tested; empty where it can."""
-        small = SPREADLESS * max(np.abs(of_a).max(), np.abs(of_b).max(), sys.float_info.min)
         if self.subject is not None:
-            if np.ptp(of_a - of_b) > small:
+            if not spreadless(of_a - of_b, everything):
                 return ""
             apart = f"{float((of_a - of_b).mean()):g}"
             return f'every {self.subject} rates "{a}" and "{b}" exactly {apart} apart; without spread there is no test'
         alone = next((level for level, values in ((a, of_a), (b, of_b)) if len(values) < 2), None)
         if alone is not None:
             return f'"{alone}" has one rating; a test of "{a}" and "{b}" needs at least two of each'
-        if max(np.ptp(of_a), np.ptp(of_b)) > small:
+        if not (spreadless(of_a, everything) and spreadless(of_b, everything)):
             return ""
         return f'all ratings of "{a}" are equal and so are those of "{b}"; without spread there is no test'

@@ -10,7 +10,7 @@ from scipy.linalg import helmert
 
 from analysis.labels import levels_of
 from analysis.statistics.anova import ROUNDING, effect_sizes, library_anova, sphericity
-from analysis.statistics.undefined import Floats, Undefined, require_columns
+from analysis.statistics.undefined import Floats, Undefined, not_zero, require_columns
 from fakesss.problem import BadInput
 
 CROSS = " × "
@@ -72,7 +72,7 @@ class FactorialAnova:
         table = pd.DataFrame(scores @ helmert(df1 + 1))
         found = library_anova(table).iloc[0]
         sizes = effect_sizes(ss_effect, others, ss_error, df1, df2)
-        row = {"F": float(found["F"]), **row, "p": float(found["p_unc"]), **sphericity(table, found)}
+        row = {"F": float(found["F"]), **row, "p": not_zero(found["p_unc"]), **sphericity(table, found)}
         return {**row, **sizes, "reason": ""}
 
 

@@ -40,7 +40,8 @@ class MeanIntervals:
             return pd.DataFrame([self.row(level, part, part, origin) for level, part in samples.items()])
         complete_table(frame, self.value, self.group, self.subject)  # refuses what has no within-person interval
         origin = first_of(frame[self.value])
-        wide = frame.pivot(index=self.subject, columns=self.group, values=self.value).dropna() - origin
+        present = frame.dropna(subset=[self.value, self.group, self.subject])
+        wide = present.pivot(index=self.subject, columns=self.group, values=self.value).dropna() - origin
         k = wide.shape[1]
         centred = wide.sub(wide.mean(axis=1), axis=0) * np.sqrt(k / (k - 1))
         return pd.DataFrame([self.row(level, wide[level], centred[level], origin) for level in wide.columns])

@@ -4,12 +4,11 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Any
 
-import numpy as np
 import pandas as pd
 import pingouin
 from scipy import stats
 
-from analysis.statistics.undefined import Undefined, require_columns
+from analysis.statistics.undefined import Undefined, from_first, not_zero, require_columns, spreadless
 from fakesss.problem import BadInput, nearest
 
 
@@ -39,10 +38,9 @@ class PlannedContrast:
             raise BadInput(f"weights: add up to {weights.sum():g}; they must add up to 0, not all 0")
         weights = weights[weights != 0]
         ratings, dropped = self.table(frame, list(weights.index))
-        # exact weights of integers give sums that are equal to the last bit or surely apart
-        sums = (ratings @ weights).round(12)
+        sums = ratings @ weights
         estimate = float(sums.mean())
-        if np.ptp(sums.to_numpy()) == 0:
+        if spreadless(sums.to_numpy(), ratings.to_numpy() * weights.abs().max()):
             raise Undefined(
                 f"{self.value} by {self.within}: every {self.subject}'s weighted sum is {estimate:g}; without spread "
                 "there is no test"
@@ -50,14 +48,14 @@ class PlannedContrast:
         found = stats.ttest_1samp(sums, 0.0)
         interval = found.confidence_interval(self.confidence)
         row = {"estimate": estimate, "ci_low": float(interval.low), "ci_high": float(interval.high)}
-        row |= {"t": float(found.statistic), "df": len(sums) - 1, "p": float(found.pvalue)}
+        row |= {"t": float(found.statistic), "df": len(sums) - 1, "p": not_zero(found.pvalue)}
         row |= {"d_z": estimate / float(sums.std()), "d_av": d_av(ratings, weights)}
         return pd.DataFrame([{**row, "n": len(sums), "dropped": "; ".join(dropped)}])
 
     def table(self, frame: pd.DataFrame, named: list[object]) -> tuple[pd.DataFrame, list[str]]:
         """Complete people x named conditions, and who lacks one of them."""
         require_columns(frame, self.value, self.within, self.subject)
-        present = frame[frame[self.within].isin(named)].dropna(subset=[self.value])
+        present = frame[frame[self.within].isin(named)].dropna(subset=[self.value, self.subject])
         where = f"{self.value} by {self.within}"
         rated = set(frame.loc[frame[self.value].notna(), self.within])
         unrated = next((level for level in named if level not in rated), None)
@@ -71,12 +69,13 @@ class PlannedContrast:
         if len(kept) < 2:
             raise Undefined(f"{where}: {len(kept)} {self.subject}s rated all of its conditions; at least two must have")
         # weights add up to 0, so what is taken off all ratings leaves every sum as it is and keeps its digits
-        return kept - kept.iloc[0, 0], [str(who) for who in wide.index[wide.isna().any(axis=1)]]
+        shifted = pd.DataFrame(from_first(kept.to_numpy()), kept.index, kept.columns)
+        return shifted, [str(who) for who in wide.index[wide.isna().any(axis=1)]]
 
 
 def d_av(ratings: pd.DataFrame, weights: "pd.Series[float]") -> float:
     """The two sides of the contrast as weighted means, their difference over their average standard deviation."""
     above, below = (ratings @ side / side.sum() for side in (weights.clip(lower=0), (-weights).clip(lower=0)))
-    if np.ptp(above.to_numpy()) == 0 and np.ptp(below.to_numpy()) == 0:
+    if all(spreadless(side.to_numpy(), ratings.to_numpy()) for side in (above, below)):
         return float("nan")
     return float(pingouin.compute_effsize(above, below, paired=True, eftype="cohen"))
