@@ -10,7 +10,7 @@ import pandas as pd
 from analysis.columns import choose_columns, decimal_points, lines_of_answers, read_header, read_text
 from analysis.labels import natural_order
 from analysis.plan import AnalysisPlan
-from analysis.ratings import unguarded
+from analysis.spreadsheets import unguarded
 from analysis.study import Factor, Picture, Question, StudyInfo
 from fakesss.problem import BadInput, nearest
 

@@ -1,19 +1,18 @@
 """Ratings from a CSV file, one row per rating: checked line by line, the latest revision kept, ready for statistics."""
 
-from collections.abc import Callable, Mapping
+from collections.abc import Mapping
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 import pandas as pd
 
 from analysis.columns import LABELLED, read_cells
 from analysis.labels import natural_order
+from analysis.spreadsheets import of_distinct, unguarded
 from fakesss.problem import BadInput
 
 MEASURED = ("rt_ms", "focus_lost_ms")
 LABELS = ("participant", "session", "stimulus", "question", "repeat_of")
-GUARD = r"^'(?=[=+\-@\t\r])"  # the export's apostrophe before what a spreadsheet would run as a formula
 DEFAULT_SCALE = 7
 MOST_ANSWERS = 1000  # of a scale counted answer by answer; finer ones are read as any number
 SMALLEST, LARGEST = 1e-50, 1e50  # sizes of a number whose square of squares float64 still holds
@@ -56,18 +55,6 @@ def read_ratings(
         frame = frame.sort_values("started_at", kind="stable")
     order = [c for c in ("participant", "session", "stimulus", "question", "trial", "presentation") if c in frame]
     return frame.sort_values(order, key=ranks, kind="stable").reset_index(drop=True)
-
-
-def unguarded(column: "pd.Series[str]") -> "pd.Series[str]":
-    """Labels as they were before the export made them safe for spreadsheets."""
-    return of_distinct(column, lambda texts: texts.str.strip().str.replace(GUARD, "", regex=True))
-
-
-def of_distinct(column: "pd.Series[str]", change: Callable[["pd.Series[str]"], "pd.Series[Any]"]) -> "pd.Series[Any]":
-    """`change(column)`, worked out once for each distinct text: of a million cells few are different."""
-    codes, distinct = pd.factorize(column)
-    changed = change(pd.Series(distinct, dtype=column.dtype))
-    return pd.Series(changed.array.take(codes), index=column.index, name=column.name)
 
 
 def refuse_scale(highest: int, where: str) -> None:

@@ -11,6 +11,7 @@ from analysis.evidence import Progress, gather
 from analysis.figures.style import letters_missing
 from analysis.files import plain, save
 from analysis.levels import from_ratings, read_levels
+from analysis.one_core import on_one_core
 from analysis.page import render_page, sections_of
 from analysis.plan import AnalysisPlan, margins_not_asked, refuse_margins
 from analysis.provenance import provenance
@@ -23,6 +24,7 @@ from fakesss.problem import BadInput
 FINE, COARSE = 0.2, 1e13  # span below which two decimals hide differences; size beyond which float64 has no decimals
 
 
+@on_one_core
 def write_report(
     ratings: Path,
     out: Path,
@@ -46,7 +48,8 @@ def write_report(
     compared with every other) and answers are 1..`scale`, or any number where it is None. `plan`: overrides the
     manifest's `[analysis]`. `participants`: CSV of all who started. `command`: stands in the session block.
     `progress(done, total, what)` is called before each analysis and at the end. Raises `BadInput` for what a user can
-    mend. Equal input gives equal bytes.
+    mend. Equal input gives equal bytes, on any number of cores: linear algebra runs on one, as sums of several threads
+    differ in their last digits.
     """
     known = read_manifest(manifest) if manifest is not None else None
     refuse_contradictions(known is not None, wide, factors)

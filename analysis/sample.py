@@ -10,8 +10,9 @@ import pandas as pd
 from analysis.labels import natural_order
 from analysis.plan import AnalysisPlan, Exclusions, Mode
 from analysis.quality import answer_times, answers, failed_checks, same_answer_share
-from analysis.ratings import is_first_showing, of_one_mode, unguarded
+from analysis.ratings import is_first_showing, of_one_mode
 from analysis.sessions import one_session_each
+from analysis.spreadsheets import unguarded
 from analysis.wording import counted, joined
 from fakesss.problem import BadInput
 
