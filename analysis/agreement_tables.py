@@ -84,11 +84,12 @@ def table_of_stability(stability: pd.DataFrame) -> Table | None:
         for entry in stability.to_dict("records")
     )
     head = ("Question", "Pictures", "People", "Pairs of answers", "ICC(A,1)")
+    several = bool((stability["n_pairs"] > stability["n_people"]).any())
+    together = " Pairs of one person are not independent, so the 95% interval is too narrow." if several else ""
     return Table(
         "table-stability",
         "Test-retest: first against second showing",
         head,
         rows,
-        note="How far a person's two answers to one picture agree: 1 is the same answer every time. Pairs of one "
-        "person or one picture are not independent, so the 95% interval is too narrow.",
+        note=f"How far a person's two answers to one picture agree: 1 is the same answer every time.{together}",
     )

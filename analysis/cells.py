@@ -6,7 +6,7 @@ from analysis.ratings import is_first_showing
 from analysis.sample import Sample
 from analysis.study import Picture, StudyInfo
 from analysis.tables import Table
-from analysis.wording import counted, level_text
+from analysis.wording import counted, level_text, true_minus
 
 COUNTS = ("n_expected", "n_answered", "n_analysed", "n_missing")
 
@@ -62,7 +62,7 @@ def table_of_cells(cells: pd.DataFrame) -> Table:
     rows = []
     for name, part in cells.groupby("stimulus", sort=False):
         by_question = part.set_index("question")
-        levels = (str(part["levels"].iloc[0]),) if with_levels else ()
+        levels = (true_minus(str(part["levels"].iloc[0])),) if with_levels else ()
         rows.append((str(name), *levels, *(in_words(by_question.loc[question]) for question in questions)))
     legend = '"40 of 44": 40 answers are analysed of 44 people who were to rate it. '
     if (cells["n_expected"] == cells["n_analysed"]).all():

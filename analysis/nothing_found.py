@@ -16,7 +16,7 @@ def nothing_said(rest: Sequence[Analysed], question: Question, plan: AnalysisPla
     whose p was below alpha before it was adjusted, or one of whose intervals excludes 0, is a hint and said to be."""
     hints = [(each, why) for each in rest if (why := hint(each, plan))]
     near = [each for each, _ in hints]
-    said = [f"{sentence_case(subject(each))}: {why}. A hint, no finding." for each, why in hints]
+    said = [f"{sentence_case(subject(each))}: {why}. A hint, not a finding." for each, why in hints]
     return " ".join([*none_found([each for each in rest if each not in near], question, plan), *said])
 
 
@@ -66,8 +66,8 @@ def hint(each: Analysed, plan: AnalysisPlan) -> str:
     if each.p is not None and each.p < plan.alpha and decides is not None and plan.adjust != "none":
         said.append(f"{apa_p(each.p)} by itself, {apa_p(decides)} {NAMES[plan.adjust]}-adjusted")
     if apart := farthest_from_zero(each):
-        interval = f"{percent(plan.confidence)} CI {signed(apart[1])} to {signed(apart[2])}"
-        said.append(f"{apart[0]} has a {interval}, without 0")
+        interval = f"{percent(plan.confidence)} CI ({signed(apart[1])} to {signed(apart[2])})"
+        said.append(f"the {interval} of {apart[0]} excludes 0")
     return ", and ".join(said)
 
 

@@ -88,7 +88,8 @@ def fewer(evidence: Evidence) -> str:
     if not sizes or min(sizes) == evidence.sample.n_analysed:
         return ""
     few, many = min(sizes), max(sizes)
+    number = str(few) if few == many else f"{few} to {many}"
     return (
-        f" Each test takes the people who rated all pictures that it compares: {few if few == many else f'{few} to {many}'} "
-        f"of the {evidence.sample.n_analysed}, as the others lack a rating."
+        f" Each test takes the people who rated all pictures that it compares: {number} of the "
+        f"{evidence.sample.n_analysed}, as the others lack a rating."
     )

@@ -5,11 +5,13 @@ from collections.abc import Mapping
 
 COLUMNS = re.compile(r"^(?:variance of )?rating'*(?: by [^:]*)?: ")
 
+PICTURE = re.compile(r'\bstimulus(?=[^"]*(?:"[^"]*"[^"]*)*$)')  # outside quotation marks, where labels stand
+
 
 def reader_words(reason: object, labels: Mapping[str, str] | None = None) -> str:
     """The sentence of an `Undefined` without the columns that begin it ("rating by condition: "), and with the samples'
     names in place of their codes. `labels`: code -> name."""
-    sentence = COLUMNS.sub("", str(reason))
+    sentence = PICTURE.sub("picture", COLUMNS.sub("", str(reason)))
     for code, label in (labels or {}).items():
         sentence = sentence.replace(f'"{code}"', f"“{label}”")
     return sentence

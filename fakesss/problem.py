@@ -11,6 +11,7 @@ from types import UnionType
 from typing import Any, TypeVar, Union, get_args, get_origin
 
 from pydantic import BaseModel, ConfigDict, ValidationError
+from pydantic_core import ErrorDetails
 
 
 class BadInput(ValueError):
@@ -36,6 +37,7 @@ WORDS = (
     ("greater than", ">"),
     ("less than", "<"),
 )
+TAGS = ("float", "int", "str", "bool")
 
 
 def nearest(name: str, names: Iterable[str]) -> str:
@@ -67,8 +69,8 @@ def first_sentence(error: ValidationError, model: type[BaseModel]) -> str:
     """The first of pydantic's complaints as `key: value: what to do`."""
     details = error.errors(include_url=False)
     # a misspelt required key is both unknown and missing; the misspelling is what helps
-    detail = next((d for d in details if d["type"] == "extra_forbidden"), details[0])
-    where = detail["loc"]
+    detail = next((d for d in details if d["type"] == "extra_forbidden"), branch(details))
+    where = tuple(part for part in detail["loc"] if not is_tag(part))
     if detail["type"] == "extra_forbidden":
         names = fields_at(model, where[:-1])
         return f"{dotted(where)}: unknown key; {nearest(str(where[-1]), names)}"
@@ -77,6 +79,19 @@ def first_sentence(error: ValidationError, model: type[BaseModel]) -> str:
     shown = f"{detail['input']!r}: " if not isinstance(detail["input"], Mapping) else ""
     key = f"{dotted(where)}: " if where else ""
     return f"{key}{shown}{in_our_words(detail['msg'])}"
+
+
+def branch(details: Sequence[ErrorDetails]) -> ErrorDetails:
+    """The first complaint; of a table that may also be a number, what is wrong inside the table."""
+    first = details[0]
+    stem = first["loc"][:-1]
+    inside = (d for d in details if d["loc"][: len(stem)] == stem and len(d["loc"]) > len(first["loc"]))
+    return next(inside, first) if isinstance(first["input"], Mapping) and first["type"] != "missing" else first
+
+
+def is_tag(part: int | str) -> bool:
+    """Whether a part of a location is pydantic's name for a branch of a union ("constrained-float"), not a key."""
+    return isinstance(part, str) and (part in TAGS or part.startswith(("constrained-", "dict[", "tuple[", "list[")))
 
 
 def in_our_words(message: str) -> str:

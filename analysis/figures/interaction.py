@@ -17,7 +17,7 @@ from analysis.figures.style import COLOURS, STYLE, THUMBNAIL, Drawing, drawn, th
 from analysis.results import Analysed
 from analysis.rows import Level
 from analysis.study import Factor, StudyInfo
-from analysis.wording import joined, level_text, sentence_case
+from analysis.wording import joined, level_text, sentence_case, true_minus
 
 MARKERS, DASHES = ("o", "s", "^", "D", "v", "P"), ("-", (0, (5, 2)), (0, (1, 1.2)), "-.", (0, (7, 2, 1, 2, 1, 2)), "-")
 APART = tuple(COLOURS[place] for place in (0, 2, 1, 3, 5, 4))
@@ -72,7 +72,7 @@ def interaction_figure(study: StudyInfo, whole: Sequence[Analysed], confidence: 
         for (row, values), (column, each) in product(enumerate(combinations), enumerate(whole)):
             axes = grid[row][column]
             draw_lines(axes, each, layout, values, study)
-            at = ", ".join(f"{f.name} {level_text(v)}" for f, v in zip(layout.panels, values, strict=True))
+            at = ", ".join(f"{f.name} {true_minus(level_text(v))}" for f, v in zip(layout.panels, values, strict=True))
             heading = [sentence_case(each.row.question)] if row == 0 else []
             axes.set_title("\n".join([*heading, *([at] if at else [])]), fontweight="bold" if row == 0 else "normal")
             axes.set_xlabel(layout.axis.name)
@@ -104,12 +104,12 @@ def draw_lines(axes: Axes, each: Analysed, layout: Layout, values: tuple[Any, ..
         axes.errorbar(
             places + 0.1 * (line - (count - 1) / 2), own["mean"], yerr=(own["ci_high"] - own["mean"]).fillna(0.0),
             color=colour, marker=marker, markersize=6, linestyle=DASHES[line % len(DASHES)], linewidth=1.4,
-            elinewidth=1.4, capsize=3, label=level_text(level), zorder=3,
+            elinewidth=1.4, capsize=3, label=true_minus(level_text(level)), zorder=3,
         )  # fmt: skip
         for place, cell in zip(places, cells, strict=True) if below else ():
             under(axes, float(place), line, cell, study, colour)
     axes.set_xlim(-0.5, len(places) - 0.5)
-    axes.set_xticks(places, [level_text(value) for value in layout.axis.levels])
+    axes.set_xticks(places, [true_minus(level_text(value)) for value in layout.axis.levels])
     axes.tick_params(axis="x", length=0, pad=4 + below)
 
 

@@ -6,7 +6,7 @@ from analysis.evidence import Evidence
 from analysis.figures.style import data_uri, thumbnail
 from analysis.section import Section, rendered
 from analysis.study import StudyInfo
-from analysis.wording import level_text
+from analysis.wording import level_text, true_minus
 
 MANY = 60
 """More pictures are shown smaller, and folded."""
@@ -25,7 +25,7 @@ def shown(study: StudyInfo) -> list[dict[str, Any]]:
             "id": picture.id,
             "label": picture.label,
             "role": picture.role,
-            "levels": [(name, level_text(value)) for name, value in picture.levels],
+            "levels": [(name, true_minus(level_text(value))) for name, value in picture.levels],
             "same": picture.same_picture_as,
             "image": data_uri(thumbnail(picture.file, side))
             if picture.file is not None and picture.file.is_file()
