@@ -49,6 +49,11 @@ class PlannedTest:
     adjust: Adjust = "none"
 
     @property
+    def together(self) -> tuple[str, Adjust]:
+        """The family and its method: tests in which both are equal are adjusted together."""
+        return self.family, self.adjust
+
+    @property
     def hopeless(self) -> str:
         """Why no number of people would do; empty where one may."""
         if self.difference is None:

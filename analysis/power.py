@@ -1,10 +1,10 @@
 """Power by simulation: in what share of simulated studies the declared tests reject, and how many people it takes."""
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Collection, Sequence
 from dataclasses import dataclass, field
 from functools import cache
 from math import inf
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 import numpy.typing as npt
@@ -41,14 +41,23 @@ def power_of(rejections: int, studies: int) -> Power:
     return Power(rejections / studies, float(low), float(high))
 
 
+class Count(NamedTuple):
+    """Of the studies simulated: in how many a test rejects, and in how many it has no value."""
+
+    rejections: int
+    without: int
+
+
 @dataclass
 class Simulation:
     """Studies simulated by `draw`, and what their tests found.
 
     `draw(question, people, studies, random)` returns answers of shape (people, studies, pictures), pictures in the
     order of the manifest, and uses random numbers person by person: studies of more people then begin with the same
-    ones, so that power rises with their number almost without scatter. `pictures`: how many there are. Everything
-    follows from `seed`. A test without a value in a study (all answers equal) counts as not rejecting.
+    ones, so that power rises with their number almost without scatter. `pictures`: how many there are; `largest`: the
+    most people that will be asked for, which bounds memory. Everything follows from `seed` (and above 1000 people from
+    `largest`). A test without a value in a study (all answers equal) counts as not rejecting. `found`: people -> place
+    among `tests` -> what was found.
     """
 
     tests: Sequence[PlannedTest]
@@ -56,48 +65,75 @@ class Simulation:
     pictures: int
     studies: int
     seed: int
-    found: dict[int, tuple[int, ...]] = field(default_factory=dict)
+    largest: int = USUAL_MOST
+    found: dict[int, dict[int, Count]] = field(default_factory=dict)
 
-    def simulate(self, people: int, progress: Progress | None = None) -> None:
-        """Counts for each test the studies with so many people in which it rejects; each size is simulated once.
+    def simulate(self, people: int, test: int | None = None, progress: Progress | None = None) -> None:
+        """Counts the studies with so many people in which the test at that index rejects; without one, for all tests.
 
-        `progress(people, studies)` is called after every block of studies, which is the same for any number of people.
+        Other tests of the same answers are counted along, and each test of each size once. `progress(people, studies)`
+        is called after every block of studies, which is the same for any number of people.
         """
-        if people in self.found:
+        known = self.found.get(people, {})
+        places = [place for place in self.decided_with(test) if place not in known]
+        if not places:
             return
-        count = np.zeros(len(self.tests), dtype=np.int64)
-        size = max(1, MEMORY // (self.pictures * max(self.pictures, USUAL_MOST)))
+        rejects, without = (np.zeros(len(self.tests), dtype=np.int64) for _ in range(2))
+        size = max(1, MEMORY // (self.pictures * max(self.pictures, self.largest, USUAL_MOST)))
         for block, start in enumerate(range(0, self.studies, size)):
             studies = min(size, self.studies - start)
-            count += self.decided(self.p_values(people, block, studies)).sum(axis=0)
+            p = self.p_values(people, block, studies, places)
+            rejects += self.decided(p, places).sum(axis=0)
+            without += np.isnan(p).sum(axis=0)
             if progress is not None:
                 progress(people, studies)
-        self.found[people] = tuple(map(int, count))
+        self.found[people] = known | {place: Count(int(rejects[place]), int(without[place])) for place in places}
 
-    def p_values(self, people: int, block: int, studies: int) -> Floats:
-        """(studies, tests), not yet adjusted."""
+    def decided_with(self, test: int | None) -> list[int]:
+        """Places of the tests that the answers to a test's questions decide: its own and of tests adjusted with it."""
+        if test is None:
+            return list(range(len(self.tests)))
+        asked = self.questions(test)
+        return [place for place in range(len(self.tests)) if self.questions(place) <= asked]
+
+    def questions(self, test: int) -> frozenset[str]:
+        """Those whose answers it takes to decide the test at that index."""
+        mine = self.tests[test]
+        if mine.adjust == "none":
+            return frozenset([mine.question])
+        return frozenset(each.question for each in self.tests if each.together == mine.together)
+
+    def p_values(self, people: int, block: int, studies: int, places: Collection[int] | None = None) -> Floats:
+        """(studies, tests), not yet adjusted; NaN for tests at other places than `places`."""
         p = np.full((studies, len(self.tests)), np.nan)
+        wanted = range(len(self.tests)) if places is None else places
         for number, question in enumerate(dict.fromkeys(test.question for test in self.tests)):
-            random = np.random.default_rng([self.seed, number, block])
-            moments = Moments.of(self.draw(question, people, studies, random))
-            for place, test in enumerate(self.tests):
-                if test.question == question:
-                    p[:, place] = test.p(moments)
+            mine = [place for place in wanted if self.tests[place].question == question]
+            if mine:
+                random = np.random.default_rng([self.seed, number, block])
+                moments = Moments.of(self.draw(question, people, studies, random))
+                for place in mine:
+                    p[:, place] = self.tests[place].p(moments)
         return p
 
-    def decided(self, p: Floats) -> npt.NDArray[np.bool_]:
-        """(studies, tests): which reject, the tests of each family adjusted together."""
+    def decided(self, p: Floats, places: Collection[int] | None = None) -> npt.NDArray[np.bool_]:
+        """(studies, tests): which of those at `places` reject, the tests of each family adjusted together."""
         deciding = p.copy()
-        for family, method in dict.fromkeys((test.family, test.adjust) for test in self.tests):
-            places = [place for place, test in enumerate(self.tests) if (test.family, test.adjust) == (family, method)]
-            if method != "none":
-                deciding[:, places] = adjusted(p[:, places], method)
+        wanted = range(len(self.tests)) if places is None else places
+        for together in dict.fromkeys(self.tests[place].together for place in wanted):
+            family = [place for place in wanted if self.tests[place].together == together]
+            if together[1] != "none":
+                deciding[:, family] = adjusted(p[:, family], together[1])
         rejects: npt.NDArray[np.bool_] = deciding < np.array([test.alpha for test in self.tests])
         return rejects
 
+    def sizes(self, test: int) -> list[int]:
+        """Numbers of people that the test at that index was simulated with."""
+        return [people for people, known in self.found.items() if test in known]
+
     def power(self, test: int, people: int) -> Power:
         """Of the test at index `test`; `people` must be simulated."""
-        return power_of(self.found[people][test], self.studies)
+        return power_of(self.found[people][test].rejections, self.studies)
 
 
 @dataclass(frozen=True)
@@ -154,21 +190,21 @@ class Search:
     def run(self, asked: Sequence[int] = (), progress: Progress | None = None) -> None:
         """Simulates the sizes asked for, and on until every test that has a chance has its number and both limits."""
         for people in asked:
-            self.simulation.simulate(people, progress)
-        while (size := self.next()) is not None:
-            self.simulation.simulate(size, progress)
+            self.simulation.simulate(people, progress=progress)
+        while (needed := self.next()) is not None:
+            self.simulation.simulate(*needed, progress)
 
-    def next(self) -> int | None:
-        """A size that some test still needs; None where nothing is left to learn. Each size tells of all tests."""
+    def next(self) -> tuple[int, int] | None:
+        """A size and the place of a test that still needs it; None where nothing is left to learn."""
         for test, planned in enumerate(self.simulation.tests):
             for bound in ("share", "high", "low") if not planned.hopeless else ():
                 if (size := self.bracket(test, bound).next(self.target, self.most)) is not None:
-                    return size
+                    return size, test
         return None
 
     def bracket(self, test: int, bound: str) -> Bracket:
         """By the sizes simulated so far. `bound`: "share", or the limit "low" or "high" of power that has to reach."""
-        power = {size: getattr(self.simulation.power(test, size), bound) for size in self.simulation.found}
+        power = {size: getattr(self.simulation.power(test, size), bound) for size in self.simulation.sizes(test)}
         enough = min((size for size in power if power[size] >= self.target), default=None)
         below = max((size for size in power if power[size] < self.target and size < (enough or inf)), default=None)
         at_below, at_enough = power[below] if below else 0.0, power[enough] if enough else 1.0

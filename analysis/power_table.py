@@ -29,7 +29,7 @@ def found_row(search: Search, place: int, asked: Sequence[int], completing: floa
     simulation = search.simulation
     people, low, high = (smallest(search, place, bound) for bound in ("share", "high", "low"))
     there = None if people is None else simulation.power(place, people)
-    simulated = [size for size in dict.fromkeys(asked) if size in simulation.found]
+    simulated = [size for size in dict.fromkeys(asked) if size in simulation.sizes(place)]
     return {
         **{name: getattr(simulation.tests[place], name) for name in DESCRIBED},
         "people": people,
@@ -58,9 +58,22 @@ def why_none(search: Search, place: int) -> str:
     if below is None:
         return "stopped before it was known"
     reached = f"power {no_zero(search.simulation.power(place, below).share, 2)}"
+    people, without = counted(below, "participant"), valueless(search, place, below)
     if below == search.most:
-        return f"not reached with {counted(below, 'participant')}: {reached}"
-    return f"stopped before it was known: {reached} with {counted(below, 'participant')}"
+        return f"not reached with {people}: {reached}{without}"
+    return f"stopped before it was known: {reached} with {people}{without}"
+
+
+def valueless(search: Search, place: int, people: int) -> str:
+    """In how many studies the test has no value; empty where it has one in all."""
+    without, studies = search.simulation.found[people][place].without, search.simulation.studies
+    if not without:
+        return ""
+    many = f"all {studies}" if without == studies else f"{without} of the {studies}"
+    why = "nothing varies that it could be tested against"
+    if search.simulation.tests[place].difference is None:
+        why += ", or the best picture is also one of those named"
+    return f"; in {many} studies of so many it has no value: {why}"
 
 
 def as_frame(rows: Sequence[dict[str, Any]]) -> pd.DataFrame:

@@ -11,7 +11,7 @@ import tomllib
 from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
+from typing import Annotated, Any
 
 import numpy as np
 from pydantic import Field
@@ -20,14 +20,17 @@ from fakesss.problem import BadInput, Strict, nearest, validated
 from study_server.manifest import BuiltStudy, Stimulus
 from study_server.settings import Question
 
+Steps = Annotated[float, Field(ge=-1000, le=1000)]  # a hundred scales: beyond it float32 has no answer
+Spread = Annotated[float, Field(ge=0, le=1000)]
+
 
 class QuestionEffects(Strict):
     """What moves the answers to one question, in steps of its scale. Factors go by their name or their path."""
 
-    intercept: float | None = Field(None, description="mean answer without effects; empty: the scale's middle")
-    slopes: dict[str, float] = Field({}, description="factor -> steps per standard deviation of its levels")
-    levels: dict[str, dict[str, float]] = Field({}, description="factor -> level -> steps; levels left out: 0")
-    pictures: dict[str, float] = Field(
+    intercept: Steps | None = Field(None, description="mean answer without effects; empty: the scale's middle")
+    slopes: dict[str, Steps] = Field({}, description="factor -> steps per standard deviation of its levels")
+    levels: dict[str, dict[str, Steps]] = Field({}, description="factor -> level -> steps; levels left out: 0")
+    pictures: dict[str, Steps] = Field(
         {}, description="stimulus id -> steps: what no factor says, such as an interaction or a picture made elsewhere"
     )
 
@@ -35,8 +38,8 @@ class QuestionEffects(Strict):
 class Effects(Strict):
     """The effects file: two spreads and a table a question."""
 
-    person_sd: float = Field(0.7, ge=0, description="standard deviation of the person term, steps")
-    noise_sd: float = Field(0.9, ge=0, description="standard deviation of the noise, steps")
+    person_sd: Spread = Field(0.7, description="standard deviation of the person term, steps")
+    noise_sd: Spread = Field(0.9, description="standard deviation of the noise, steps")
     question: dict[str, QuestionEffects] = Field({}, description="question -> its effects")
 
 

@@ -92,17 +92,30 @@ def test_an_interruption_prints_what_is_known(
 ) -> None:
     simulate = Simulation.simulate
 
-    def interrupted(self: Simulation, people: int, *others: Any) -> None:
+    def interrupted(self: Simulation, people: int, *others: Any, **progress: Any) -> None:
         if len(self.found) == 2:
             raise KeyboardInterrupt
-        simulate(self, people, *others)
+        simulate(self, people, *others, **progress)
 
     monkeypatch.setattr(Simulation, "simulate", interrupted)
     code, out, err = power(study, "--people", "30", capsys=capsys)
     assert code == 130
     assert "1.00 (.99 to 1.00)" in out
     assert "stopped before it was known: power ." in out
-    assert "fakesss: stopped" in err
+    assert "fakesss: stopped; the table says what was known by then, and the same command begins anew" in err
+    assert "kept" not in err
+
+
+def test_an_interruption_before_anything_is_known(
+    study: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    def interrupted(*others: Any, **options: Any) -> None:
+        raise KeyboardInterrupt
+
+    monkeypatch.setattr(fakesss.cli_power, "power_of", interrupted)
+    code, out, err = power(study, capsys=capsys)
+    assert (code, out) == (130, "")
+    assert err == "fakesss: stopped before anything was known; the same command begins anew\n"
 
 
 @pytest.mark.parametrize(
@@ -110,8 +123,11 @@ def test_an_interruption_prints_what_is_known(
     [
         (("--target", "0.1"), "--target 0.1: must lie between the study's alpha, 0.1, and 1"),
         (("--target", "1"), "--target 1: must lie between"),
-        (("--completing", "0"), "--completing 0: must be above 0 and at most 1"),
-        (("--people", "1"), "Invalid value for '--people': 1 is not in the range x>=2"),
+        (("--completing", "0"), "--completing 0: must lie between 0.01 and 1"),
+        (("--completing", "1e-300"), "--completing 1e-300: must lie between 0.01 and 1"),
+        (("--people", "100001"), "100001 is not in the range 2<=x<=100000"),
+        (("--most", "100001"), "100001 is not in the range 2<=x<=100000"),
+        (("--people", "1"), "Invalid value for '--people': 1 is not in the range 2<=x<=100000"),
         (("--effects", "none.toml"), "none.toml: cannot be read"),
         (("-o", "table.txt"), 'table.txt: ".txt" is no format of tables'),
     ],
@@ -147,3 +163,24 @@ def test_a_study_of_independent_samples(tmp_path: Path, capsys: pytest.CaptureFi
     for test in json.loads(out)["tests"]:
         if test["people"]:
             assert independent[test["title"]] > test["people"]
+
+
+def test_rules_that_leave_people_out_are_named(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    rules = {"exclude": {"same_answer_share": 0.9, "failed_checks": 1}}
+    _, _, err = power(write_study(tmp_path / "study", 9, analysis=rules), "--most", "4", capsys=capsys)
+    assert "[analysis.exclude] failed_checks, same_answer_share: nobody is left out here" in err
+
+
+def test_one_picture_has_nothing_to_test(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    code, out, err = power(write_study(tmp_path / "study", 1), capsys=capsys)
+    assert (code, out) == (2, "")
+    assert "nothing to test: Translucent vs picture: one picture; a test needs at least two" in err
+
+
+def test_effects_that_drown_everything_leave_no_value(study: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    """All answers lie at the ends of the scale: not an effect that is missed, but one that no test is needed for."""
+    path = study.parent / "huge.toml"
+    path.write_text("person_sd = 0.1\nnoise_sd = 0.1\n[question.translucent.slopes]\nbacklight = 400\n")
+    code, out, _ = power(study, "--effects", str(path), "--most", "10", capsys=capsys)
+    assert code == 0
+    assert "not reached with 10 participants: power .00; in all 400 studies of so many it has no value" in out

@@ -1,7 +1,9 @@
 """Simulated power agrees with closed forms within its Monte-Carlo error, and so does the number of people."""
 
 from collections.abc import Callable
+from dataclasses import replace
 from math import ceil
+from typing import Literal
 
 import numpy as np
 import pytest
@@ -9,7 +11,7 @@ from scipy import integrate, stats
 from statsmodels.stats.power import FTestAnovaPower, TTestPower
 
 from analysis.planned_tests import PlannedTest
-from analysis.power import Bracket, Draw, Search, Simulation
+from analysis.power import MEMORY, Bracket, Draw, Search, Simulation
 from analysis.power_table import as_frame, as_text, found_rows
 from analysis.statistics.batches import Moments, independent_p, paired_equivalence_p, repeated_p
 from analysis.statistics.undefined import Floats
@@ -113,8 +115,8 @@ def test_the_number_of_people_is_that_of_the_noncentral_t(difference: float, tar
     row = found_rows(search, (), 1.0)[0]
     assert row["people_low"] <= exact <= row["people_high"]
     assert row["people_low"] <= row["people"] <= row["people_high"]
-    found = search.simulation.found
-    assert found[row["people"]][0] >= target * STUDIES > found[row["people"] - 1][0]
+    found = {people: count[0].rejections for people, count in search.simulation.found.items()}
+    assert found[row["people"]] >= target * STUDIES > found[row["people"] - 1]
     assert len(found) < 30
 
 
@@ -171,10 +173,10 @@ def test_more_people_are_the_same_studies_continued() -> None:
 
 
 def test_the_seed_decides() -> None:
-    def rejections(seed: int) -> tuple[int, ...]:
+    def rejections(seed: int) -> int:
         simulation = simulated(planned(repeated_p), normal([0, 0.5]), 2, seed)
         simulation.simulate(30)
-        return simulation.found[30]
+        return simulation.found[30][0].rejections
 
     assert rejections(1) == rejections(1) != rejections(2)
 
@@ -205,3 +207,62 @@ def test_no_test_is_left_open_by_sizes_simulated_for_another() -> None:
     search.run()
     for row in found_rows(search, (), 1.0):
         assert row["people_low"] <= row["people"] <= row["people_high"]
+
+
+def two_questions(adjust: Literal["none", "holm"]) -> tuple[Simulation, set[tuple[str, int]]]:
+    """Two tests of question a and one of b, in a family of one method; and which (question, people) were drawn."""
+    drawn: set[tuple[str, int]] = set()
+    of = {"a": normal([0, 0.5]), "b": normal([0, 0.3])}
+
+    def draw(question: str, people: int, studies: int, random: np.random.Generator) -> Floats:
+        drawn.add((question, people))
+        return np.asarray(of[question](question, people, studies, random))
+
+    plain = planned(repeated_p)
+    tests = [replace(plain, question=question, family="rows", adjust=adjust) for question in "aab"]
+    return Simulation(tests, draw, 2, 200, 1), drawn
+
+
+def test_only_questions_that_decide_a_test_are_drawn() -> None:
+    """Other tests of the same answers are counted along, with the same counts as if all had been drawn."""
+    whole, _ = two_questions("none")
+    whole.simulate(40)
+    simulation, drawn = two_questions("none")
+    simulation.simulate(40, 2)
+    assert drawn == {("b", 40)} and simulation.sizes(0) == [] and simulation.sizes(2) == [40]
+    simulation.simulate(40, 0)
+    assert drawn == {("b", 40), ("a", 40)} and simulation.found == whole.found
+    family, drawn = two_questions("holm")
+    family.simulate(40, 2)
+    assert drawn == {("b", 40), ("a", 40)}
+    assert family.found[40][2].rejections < whole.found[40][2].rejections
+
+
+def test_memory_is_bounded_for_any_number_of_people() -> None:
+    held: list[int] = []
+
+    def draw(question: str, people: int, studies: int, random: np.random.Generator) -> Floats:
+        held.append(people * studies * 2)
+        return random.standard_normal((people, studies, 2))
+
+    for largest in (10, 1000, 50_000):
+        Simulation([planned(repeated_p)], draw, 2, 100, 1, largest).simulate(largest)
+    assert max(held) <= MEMORY
+    assert sum(held) == 2 * 100 * (10 + 1000 + 50_000)
+
+
+def test_tests_without_a_value_in_any_study_say_so() -> None:
+    """Where all differ by the same there is no spread to test against; of four random pairs of 1 and 2 in 7%."""
+
+    def draw(question: str, people: int, studies: int, random: np.random.Generator) -> Floats:
+        return random.integers(1, 8, (people, studies, 1)) + np.array([0.0, 1.0])
+
+    def lucky(question: str, people: int, studies: int, random: np.random.Generator) -> Floats:
+        return random.integers(1, 3, (people, studies, 2)).astype(float)
+
+    for drawn, share in ((draw, "all 300"), (lucky, "19 of the 300")):
+        search = Search(Simulation([planned(repeated_p)], drawn, 2, 300, 1), 0.8, 4)
+        search.run()
+        note = found_rows(search, (), 1.0)[0]["note"]
+        assert note.startswith("not reached with 4 participants: power .")
+        assert f"in {share} studies of so many it has no value" in note

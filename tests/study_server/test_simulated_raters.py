@@ -246,3 +246,23 @@ def test_a_seed_is_a_data_set_whoever_comes_first(tmp_path: Path, csv_rows: Expo
             people.setdefault(row["session"], []).append((row["stimulus"], row["question"], row["rating"]))
         told.append(sorted(sorted(answers) for answers in people.values()))
     assert told[0] == told[1]
+
+
+@pytest.mark.parametrize(
+    ("line", "offender"),
+    [
+        ("noise_sd = 1e39", "noise_sd: 1e+39"),
+        ("person_sd = 1001", "person_sd: 1001"),
+        ("[question.translucent]\nintercept = 1e300", "question.translucent.intercept: 1e+300"),
+        ("[question.translucent.slopes]\nbacklight = 1e300", "question.translucent.slopes.backlight: 1e+300"),
+        ("[question.translucent.pictures]\nimg01 = -1e300", "question.translucent.pictures.img01: -1e+300"),
+    ],
+)
+def test_effects_are_bounded(tmp_path: Path, line: str, offender: str) -> None:
+    """A thousand steps are more than any scale has, and all that float32 need hold."""
+    study = load_study(write_study(tmp_path / "study", 9))
+    path = tmp_path / "effects.toml"
+    path.write_text(line)
+    with pytest.raises(BadInput) as error:
+        load_effects(path, study)
+    assert offender in str(error.value) and "1000" in str(error.value)
