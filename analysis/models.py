@@ -10,7 +10,7 @@ from analysis.crossed import free
 from analysis.evidence import Evidence
 from analysis.results import Analysed
 from analysis.rows import Row
-from analysis.statistics.mixed import MixedFit, MixedModel
+from analysis.statistics.mixed import MixedFit, MixedModel, NoRandomTerm
 from analysis.statistics.ordinal import OrdinalFit, OrdinalRegression
 from analysis.statistics.undefined import Undefined
 from analysis.statistics.variance import VarianceComponents
@@ -20,12 +20,16 @@ from analysis.wording import level_text
 
 @dataclass(frozen=True)
 class Modelled:
-    """The models of one row, or of all rows of a full factorial. `missing`: kind of model -> why it has no value."""
+    """The models of one row, or of all rows of a full factorial. `missing`: kind of model -> why it has no value.
+
+    `by_design`: the kinds among them that the design rules out, whatever people answer: nothing is wrong.
+    """
 
     found: tuple[Analysed, ...]
     ordinal: OrdinalFit | None
     mixed: MixedFit | None
     missing: dict[str, str]
+    by_design: tuple[str, ...] = ()
 
     def test(self, fit: OrdinalFit | MixedFit | None, each: Analysed) -> dict[str, Any] | None:
         """The test of that row, where its model was fitted."""
@@ -52,12 +56,15 @@ def modelled(found: tuple[Analysed, ...], evidence: Evidence) -> Modelled:
     frame = model_frame(row, evidence.study, evidence.sample.ratings)
     repeated = found[0].mode == "repeated"
     missing: dict[str, str] = {}
+    by_design: list[str] = []
 
     def attempt(kind: str, fit: Callable[[pd.DataFrame], Any]) -> Any:
         try:
             return fit(frame)
         except Undefined as reason:
             missing[kind] = str(reason).removeprefix(f"{value} by {' and '.join(names)}: ")
+            if isinstance(reason, NoRandomTerm) and not repeated:  # one rating a person, one picture a level
+                by_design.append(kind)
             return None
 
     ordinal = mixed = None
@@ -66,7 +73,7 @@ def modelled(found: tuple[Analysed, ...], evidence: Evidence) -> Modelled:
         ordinal = attempt("ordinal", OrdinalRegression(value, names, cluster, len(names) > 1, plan.confidence).fit)
     if "mixed" in plan.tests:
         mixed = attempt("mixed", MixedModel(value, names, person if repeated else None, picture, len(names) > 1).fit)
-    return Modelled(found, ordinal, mixed, missing)
+    return Modelled(found, ordinal, mixed, missing, tuple(by_design))
 
 
 def factor_names(row: Row) -> tuple[str, ...]:

@@ -1,6 +1,6 @@
 """Beside the analysis of variance: ordinal regression, mixed models, where variance lies, and whether tests agree."""
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from typing import Any
 
 import pandas as pd
@@ -15,7 +15,7 @@ from analysis.tables import SHOWN_LEVELS
 from analysis.verdicts import agreement_of_tests
 from analysis.wording import apa_p, counted, joined, percent, signed, true_minus
 
-ENOUGH = 40  # people; with 20 the clustered test found an effect that was not there in 9 % (docs/calibration.md)
+TEST = ("chi2", "df", "F", "df2", "p")
 KINDS = {"ordinal": "Ordinal regression", "mixed": "Mixed model"}
 
 
@@ -65,7 +65,7 @@ def place_of(each: Analysed) -> dict[str, str]:
 
 
 def ordinal_table(fitted: Sequence[Modelled]) -> pd.DataFrame:
-    """`chi2, df, p, n, participants, log_likelihood` of each row, or the `reason` why it has none."""
+    """`chi2, df, F, df2, p, n, participants, log_likelihood` of each row, or the `reason` why it has none."""
     rows: list[dict[str, Any]] = []
     for model in fitted:
         for each in model.found:
@@ -73,7 +73,7 @@ def ordinal_table(fitted: Sequence[Modelled]) -> pd.DataFrame:
             if test is not None and fit is not None:
                 facts = {"n": fit.n, "participants": fit.clusters or None, "log_likelihood": fit.log_likelihood}
                 rows.append(
-                    {**place_of(each), **{key: test[key] for key in ("chi2", "df", "p")}, **facts, "reason": ""}
+                    {**place_of(each), **{key: test[key] for key in TEST}, **facts, "reason": ""}
                 )
             elif "ordinal" in model.missing:
                 rows.append({**place_of(each), "reason": model.missing["ordinal"]})
@@ -92,17 +92,16 @@ def odds_table(fitted: Sequence[Modelled]) -> pd.DataFrame:
 
 
 def mixed_table(fitted: Sequence[Modelled]) -> pd.DataFrame:
-    """`chi2, df, p, n`, the model's variances and what it lacks, of each row; or the `reason` why it has none."""
+    """`chi2, df, F, df2, p, n`, the model's variances and what it lacks, of each row; or the `reason` why it has none."""
     rows: list[dict[str, Any]] = []
     for model in fitted:
         for each in model.found:
             test, fit = model.test(model.mixed, each), model.mixed
             if test is not None and fit is not None:
                 parts = dict(fit.variances[["term", "variance"]].itertuples(index=False, name=None))
-                facts = {f"variance_{name.rstrip(chr(39))}": value for name, value in parts.items()}
+                facts = {f"variance_{name}": value for name, value in parts.items()}
                 lacks = {"left_out": "; ".join(fit.left_out), "at_zero": "; ".join(fit.at_zero)}
-                keys = ("chi2", "df", "p")
-                rows.append({**place_of(each), **{key: test[key] for key in keys}, "n": fit.n, **facts, **lacks})
+                rows.append({**place_of(each), **{key: test[key] for key in TEST}, "n": fit.n, **facts, **lacks})
             elif "mixed" in model.missing:
                 rows.append({**place_of(each), "reason": model.missing["mixed"]})
     return pd.DataFrame(rows)
@@ -111,9 +110,8 @@ def mixed_table(fitted: Sequence[Modelled]) -> pd.DataFrame:
 def cautions(fitted: Sequence[Modelled]) -> list[str]:
     """Models without a value, variances at 0, few clusters: a sentence for each cause, with the rows it is about."""
     said: dict[tuple[str, str], list[str]] = {}
-    alone: list[str] = []
     for model in fitted:
-        causes = [(KINDS[kind], why) for kind, why in model.missing.items()]
+        causes = [(KINDS[kind], why) for kind, why in model.missing.items() if kind not in model.by_design]
         if model.ordinal:
             causes += [(KINDS["ordinal"], why) for why in model.ordinal.cautions]
         if model.mixed:
@@ -121,11 +119,7 @@ def cautions(fitted: Sequence[Modelled]) -> list[str]:
             causes += [(KINDS["mixed"], why) for why in zero]
         for cause in causes:
             said.setdefault(cause, []).append(title_of(model))
-    few = min((model.ordinal.clusters for model in fitted if model.ordinal and model.ordinal.clusters), default=ENOUGH)
-    if few < ENOUGH:
-        people = counted(few, "participant")
-        alone.append(f"Models: Wald's tests of {people} find effects too readily; lean on the analysis of variance.")
-    return [f"{kind}, {joined(titles)}: {why}." for (kind, why), titles in said.items()] + alone
+    return [f"{kind}, {joined(titles)}: {why}." for (kind, why), titles in said.items()]
 
 
 def title_of(model: Modelled) -> str:
@@ -157,9 +151,16 @@ def apa_ordinal(model: Modelled, each: Analysed, test: dict[str, Any], plan: Ana
     where = f" ({each.row.compared})" if each.row.kind == "comparison" else ""
     return (
         f"A proportional odds regression ({errors}{counted(fit.n, 'rating')}) showed {verdict} of {what} on ratings of "
-        f"“{each.row.question}”{where}, χ²({test['df']}) = {test['chi2']:.2f}, {apa_p(test['p'])}"
+        f"“{each.row.question}”{where}, {statistic_text(test)}, {apa_p(test['p'])}"
         f"{odds_in_words(fit.odds_ratios, each.row.name, plan.confidence)}."
     )
+
+
+def statistic_text(test: Mapping[str, Any]) -> str:
+    """F of clustered errors, chi-squared of independent answers."""
+    if pd.isna(test["F"]):
+        return f"χ²({test['df']}) = {test['chi2']:.2f}"
+    return f"F({test['df']}, {test['df2']:.0f}) = {test['F']:.2f}"
 
 
 def odds_in_words(odds: pd.DataFrame, factor: str, confidence: float) -> str:

@@ -6,21 +6,26 @@ from dataclasses import dataclass
 import numpy as np
 import pandas as pd
 
+from analysis.statistics.containment import denominators
 from analysis.statistics.design_matrix import coding_of, refuse_empty_cells
 from analysis.statistics.reml import Codes, Estimate, estimate
 from analysis.statistics.undefined import Undefined, require_columns
-from analysis.statistics.wald import wald_tests
+from analysis.statistics.wald import against, wald_tests
 from analysis.wording import joined
 
 MOST_WORK = 1.5e8  # about 4 s, measured: see `work`
 WORK_OF_A_PERSON = 2e4
 
 
+class NoRandomTerm(Undefined):
+    """Neither people nor pictures have a variance that these ratings can tell."""
+
+
 @dataclass(frozen=True)
 class MixedFit:
-    """A fitted model. `tests`: a row per factor and interaction (`term, chi2, df, p`). `variances`: a row per random
-    term and the residual (`term, variance, share`). `left_out`: why the model lacks a random term. `at_zero`: terms of
-    variance 0, fitted without."""
+    """A fitted model. `tests`: a row per factor and interaction (`term, chi2, df, F, df2, p`). `variances`: a row per
+    random term and the residual (`term, variance, share`). `left_out`: why the model lacks a random term. `at_zero`:
+    terms of variance 0, fitted without."""
 
     tests: pd.DataFrame
     variances: pd.DataFrame
@@ -33,11 +38,12 @@ class MixedFit:
 class MixedModel:
     """Linear mixed model of `value`: fixed `factors`, random intercepts of `participant` and `picture`, crossed; REML.
 
-    `interactions`: with all of them. A column given as None has no random intercept. Tests are Wald's with normal
-    theory (z, chi-squared): without the degrees of freedom of Satterthwaite or Kenward and Roger they are a little too
-    ready to find effects in few people or pictures. Where every cell of the factors is one picture, its variance cannot
-    be told from the fixed effects: the model has none and says so. A variance of 0 is left out and said. Agrees with R
-    `lme4::lmer` (estimates, variances). Not a model of slopes: effects are taken as equal in all people.
+    `interactions`: with all of them. A column given as None has no random intercept. Tests are Wald's as F with the
+    containment degrees of freedom (`analysis.statistics.containment`): exact where every cell was rated equally often,
+    near where ratings lack; not those of Satterthwaite or Kenward and Roger. Where every cell of the factors is one
+    picture, its variance cannot be told from the fixed effects: the model has none and says so. A variance of 0 is left
+    out and said. Agrees with R `lme4::lmer` (estimates, variances). Not a model of slopes: effects are taken as equal
+    in all people.
 
     `__call__` returns `fit(frame).tests`. Raises `Undefined` where all ratings are equal, no random term is left, a
     cell is empty, nothing is left over as residual, the search fails, or the model would take too long.
@@ -70,8 +76,11 @@ class MixedModel:
         place = present.groupby(list(self.factors), observed=True, sort=False).ngroup().to_numpy()
         fixed = np.column_stack([np.ones(len(cells)), coding.matrix(cells)])[place]
         found = estimate(self.title, present[self.value].to_numpy(float), fixed, random)
-        tests = wald_tests(coding, found.effects[1:], found.covariance[1:, 1:], self.title, None, 0)
-        return MixedFit(tests, variance_table(found, tuple(random)), len(present), tuple(left_out), found.dropped)
+        tests = wald_tests(coding, found.effects[1:], found.covariance[1:, 1:], self.title)
+        tests = against(tests, denominators(coding, fixed, list(random.values())))
+        variances = variance_table(found, tuple(random))
+        variances["term"] = variances["term"].map(noun)
+        return MixedFit(tests, variances, len(present), tuple(left_out), tuple(map(noun, found.dropped)))
 
     @property
     def title(self) -> str:
@@ -82,31 +91,34 @@ class MixedModel:
         """The random terms that these ratings can tell apart, coded; and why one cannot be."""
         random: dict[str, Codes] = {}
         left_out = []
-        if self.participant is not None:
-            codes = codes_of(present[self.participant])
-            if repeats(codes):
-                random[self.participant] = codes
-            else:
-                left_out.append(f"no {self.participant} gave two ratings, so {self.participant}s have no variance")
-        if self.picture is not None:
-            codes = codes_of(present[self.picture])
-            if self.one_a_cell(present, self.picture):
+        for name in (self.participant, self.picture):
+            if name is None:
+                continue
+            codes = codes_of(present[name])
+            if name == self.picture and self.one_a_cell(present, name):
                 left_out.append(
-                    f"every cell is one {self.picture}, so the variance of {self.picture}s cannot be told from the "
+                    f"every cell is one {noun(name)}, so the variance of {noun(name)}s cannot be told from the "
                     "factors' effects"
                 )
             elif repeats(codes):
-                random[self.picture] = codes
+                random[name] = codes
             else:
-                left_out.append(f"no {self.picture} has two ratings, so {self.picture}s have no variance")
+                gave = "gave" if name == self.participant else "has"
+                found = f"there is one {noun(name)}" if codes.max() == 0 else f"no {noun(name)} {gave} two ratings"
+                left_out.append(f"{found}, so {noun(name)}s have no variance")
         if not random:
-            raise Undefined(f"{self.title}: {'; '.join(left_out)}; no random term is left to estimate")
+            raise NoRandomTerm(f"{self.title}: {'; '.join(left_out)}; no random term is left to estimate")
         return random, left_out
 
     def one_a_cell(self, present: pd.DataFrame, picture: str) -> bool:
         """Whether every cell of the factors shows a single picture."""
         cells = present.groupby(list(self.factors), observed=True)
         return int(cells[picture].nunique().max()) == 1
+
+
+def noun(column: str) -> str:
+    """What a column holds, in a sentence: apostrophes keep its name apart from a factor's, and are no part of it."""
+    return column.rstrip("'")
 
 
 def codes_of(column: "pd.Series[str]") -> Codes:

@@ -11,7 +11,7 @@ from scipy.optimize import minimize
 from statsmodels.regression.linear_model import OLS
 from statsmodels.regression.mixed_linear_model import MixedLM, VCSpec
 
-from analysis.statistics.undefined import Floats, Undefined
+from analysis.statistics.undefined import ROUNDING, Floats, Undefined
 
 Codes = npt.NDArray[np.int64]
 STARTS = (0.1, 0.4, 1.5)  # standard deviations of random terms, in those of the residual
@@ -23,7 +23,7 @@ FLAT = 1e-5  # slope of the log-likelihood for each rating at its maximum: stats
 
 @dataclass(frozen=True)
 class Estimate:
-    """Fixed effects, their covariance, and variances: of each random term that was fitted, and of the residual.
+    """Fixed effects, their covariance (X' V^-1 X)^-1, and variances: of each random term fitted, and of the residual.
 
     `dropped`: terms whose variance was 0, fitted without.
     """
@@ -48,6 +48,7 @@ def estimate(title: str, values: Floats, fixed: Floats, random: Mapping[str, Cod
         raise Undefined(f"{title}: all ratings are equal, so there is no variance to divide")
     if len(values) <= fixed.shape[1]:
         raise Undefined(f"{title}: {len(values)} ratings for {fixed.shape[1]} fixed effects; nothing is left over")
+    refuse_perfect(title, centred / spread, fixed)
     terms, dropped = dict(random), []
     with warnings.catch_warnings(), np.errstate(all="ignore"):
         warnings.simplefilter("ignore")  # statsmodels warns of boundaries and of the search: both are looked at here
@@ -67,6 +68,13 @@ def estimate(title: str, values: Floats, fixed: Floats, random: Mapping[str, Cod
     scaled = [float(part) for part in variances * spread**2]
     named = dict(zip(terms, scaled[:-1], strict=True))
     return Estimate(effects * spread, covariance * spread**2, named, scaled[-1], tuple(dropped))
+
+
+def refuse_perfect(title: str, values: Floats, fixed: Floats) -> None:
+    """`Undefined` where the fixed effects leave of `values` (of spread 1) what float64 leaves of nothing."""
+    basis = np.linalg.qr(fixed)[0]
+    if np.sqrt(np.mean((values - basis @ (basis.T @ values)) ** 2)) <= ROUNDING:
+        raise Undefined(f"{title}: {SINGULAR}")
 
 
 class SearchedMixedLM(MixedLM):  # type: ignore[misc]  # statsmodels has no types
@@ -118,8 +126,11 @@ def fitted(values: Floats, fixed: Floats, random: Mapping[str, Codes], ratios: F
         return plain.params, plain.cov_params(), np.array([plain.scale])
     found = model_of(values, fixed, random).fit(reml=True, method="bfgs", gtol=FLAT, start_params=ratios)
     parts = np.diag(found.cov_re) if len(random) == 1 else found.vcomp
+    # statsmodels' covariance is that of effects and variances together, which of ratings that lack some is up to 1% too
+    # large; its inverse's block of the effects alone is X' V^-1 X
     count = fixed.shape[1]
-    return np.asarray(found.fe_params), np.asarray(found.cov_params())[:count, :count], np.array([*parts, found.scale])
+    precision = np.linalg.inv(np.asarray(found.cov_params()))[:count, :count]
+    return np.asarray(found.fe_params), np.linalg.inv(precision), np.array([*parts, found.scale])
 
 
 def model_of(values: Floats, fixed: Floats, random: Mapping[str, Codes]) -> SearchedMixedLM:

@@ -161,7 +161,7 @@ ONE_EACH = crossed(simulated(3, 1, 1, 1)).assign(picture=["a", "b", "a"])
     [
         (crossed(np.full((5, 3), 4.0)), "all ratings are equal"),
         (crossed(np.arange(5.0)[:, None] + np.arange(3.0)), "leave no residual or cannot be told apart"),
-        (crossed(simulated(1, 6, 1, 1)), "no participant gave two ratings|participants cannot be told"),
+        (crossed(simulated(1, 6, 1, 1)), "there is one participant|participants cannot be told"),
         (ONE_EACH, "no participant gave two ratings|participants cannot be told"),
         (crossed(np.resize([1.0, 2, 4, 3], (4000, 200))), "800000 ratings, .* would take minutes, so it is not fitted"),
     ],
