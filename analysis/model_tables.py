@@ -1,6 +1,6 @@
 """Tables for the page of what the models say."""
 
-from collections.abc import Hashable, Sequence
+from collections.abc import Hashable, Mapping, Sequence
 from typing import Any
 
 import pandas as pd
@@ -16,6 +16,7 @@ PARTS = {"participant": "People", "picture": "Pictures", "residual": "Residual"}
 def table_of_verdicts(fitted: Sequence[Modelled], alpha: float) -> Table | None:
     """Every row's tests side by side."""
     tested = list(tested_rows(fitted))
+    kind = "F (df)" if any(each.mode == "repeated" for each, _ in tested) else "χ² (df)"
     names = [name for name in NAMES if any(name in p for _, p in tested)]
     models = {id(each): model for model in fitted for each in model.found}
     rows = []
@@ -24,14 +25,14 @@ def table_of_verdicts(fitted: Sequence[Modelled], alpha: float) -> Table | None:
         for name in names:
             if name in ("ordinal", "mixed"):
                 test = model.test(model.ordinal if name == "ordinal" else model.mixed, each)
-                cells.append("" if test is None else f"{test['chi2']:.2f} ({test['df']})")
+                cells.append("" if test is None else statistic(test))
             cells.append(thesis_p(p[name]) if name in p else "")
         rows.append((each.row.title, finders(p, alpha), *cells))
     head = [
         text
         for name in names
         for text in (
-            (f"{NAMES[name].capitalize()}, χ² (df)", "p") if name in ("ordinal", "mixed") else (f"{heading(name)}, p",)
+            (f"{NAMES[name].capitalize()}, {kind}", "p") if name in ("ordinal", "mixed") else (f"{heading(name)}, p",)
         )
     ]
     if len(names) < 2:
@@ -42,9 +43,16 @@ def table_of_verdicts(fitted: Sequence[Modelled], alpha: float) -> Table | None:
         ("Configuration", f"Effect at {percent(alpha)} by", *head),
         tuple(rows),
         text_columns=2,
-        note="p without adjustment for the number of tests. χ² of the models: Wald's joint test, which takes the "
-        "number of people as large.",
+        note="p without adjustment for the number of tests. Models: Wald's joint test of all coefficients"
+        + (", which takes the number of answers as large." if kind == "χ² (df)" else "."),
     )
+
+
+def statistic(test: Mapping[str, Any]) -> str:
+    """F (df, df2), or of independent answers chi-squared (df)."""
+    if pd.isna(test["F"]):
+        return f"{test['chi2']:.2f} ({test['df']})"
+    return f"{test['F']:.2f} ({test['df']}, {test['df2']:.0f})"
 
 
 def heading(name: str) -> str:

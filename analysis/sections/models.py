@@ -72,9 +72,7 @@ def ordinal_table(fitted: Sequence[Modelled]) -> pd.DataFrame:
             test, fit = model.test(model.ordinal, each), model.ordinal
             if test is not None and fit is not None:
                 facts = {"n": fit.n, "participants": fit.clusters or None, "log_likelihood": fit.log_likelihood}
-                rows.append(
-                    {**place_of(each), **{key: test[key] for key in TEST}, **facts, "reason": ""}
-                )
+                rows.append({**place_of(each), **{key: test[key] for key in TEST}, **facts, "reason": ""})
             elif "ordinal" in model.missing:
                 rows.append({**place_of(each), "reason": model.missing["ordinal"]})
     return pd.DataFrame(rows)
@@ -92,7 +90,7 @@ def odds_table(fitted: Sequence[Modelled]) -> pd.DataFrame:
 
 
 def mixed_table(fitted: Sequence[Modelled]) -> pd.DataFrame:
-    """`chi2, df, F, df2, p, n`, the model's variances and what it lacks, of each row; or the `reason` why it has none."""
+    """`chi2, df, F, df2, p, n`, the model's variances and what it lacks, of each row; or `reason`: why it has none."""
     rows: list[dict[str, Any]] = []
     for model in fitted:
         for each in model.found:

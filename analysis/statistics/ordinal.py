@@ -13,7 +13,7 @@ from analysis.statistics.design_matrix import Coding, coding_of, refuse_empty_ce
 from analysis.statistics.proportional_odds import CountedOrderedModel
 from analysis.statistics.separation import separation
 from analysis.statistics.undefined import Floats, Undefined, require_columns
-from analysis.statistics.wald import wald_tests
+from analysis.statistics.wald import clustered, refuse_few, wald_tests
 
 MOST_ANSWERS = 50
 MOST_WORK = 1.5e9  # distinct rows times parameters squared: half a minute for the Newton steps of one model
@@ -22,7 +22,8 @@ LARGEST_EFFECT = 30.0  # log odds; nothing that was not separated comes near
 
 @dataclass(frozen=True)
 class OrdinalFit:
-    """A fitted model. `tests`: a row per factor and interaction (`term, chi2, df, p`). `odds_ratios`: a row per level
+    """A fitted model. `tests`: a row per factor and interaction (`term, chi2, df, F, df2, p`; F is
+    NaN without a cluster). `odds_ratios`: a row per level
     but the first (`factor, level, against, log_odds, se, odds_ratio, ci_low, ci_high`). `thresholds`: between
     neighbouring answers, at every factor's first level (`threshold, value`). `clusters`: 0 without a cluster."""
 
@@ -43,12 +44,13 @@ class OrdinalRegression:
     the factor's first level, by the same ratio at every step of the scale. `interactions`: with all of them; an odds
     ratio is then at the plain mean over the other factors' levels. `cluster`: whose answers hang together (the
     participant); standard errors are then clustered (G / (G - 1), no other correction), else those of independent
-    answers. `confidence`: of the intervals. Tests are Wald's. Agrees with R `ordinal::clm`, `MASS::polr` and
-    `sandwich::vcovCL`. McCullagh (1980). Not a mixed model: odds ratios are those of the population's answers, smaller
-    than one person's. Answers nobody gave are no step of the scale. Missing values are left out.
+    answers. `confidence`: of the intervals. Tests are Wald's: of G clusters referred to F with q and G - q degrees of
+    freedom (`analysis.statistics.wald.clustered`), and intervals to t with G - 1. Agrees with R `ordinal::clm`,
+    `MASS::polr` and `sandwich::vcovCL`. McCullagh (1980). Not a mixed model: odds ratios are those of the population's
+    answers, smaller than one person's. Answers nobody gave are no step of the scale. Missing values are left out.
 
     `__call__` returns `fit(frame).tests`. Raises `Undefined` where all ratings are equal, levels are separated, a
-    cell is empty, the clustered covariance is singular, or the model would take too long.
+    cell is empty, there are no more clusters than a test has degrees of freedom, or the model would take too long.
     """
 
     value: str
@@ -76,6 +78,8 @@ class OrdinalRegression:
         refuse_empty_cells(coding, rows.drop_duplicates(list(self.factors)), self.value)
         matrix = coding.matrix(rows)
         self.refuse_work(len(kept), matrix.shape[1] + len(answers) - 1)
+        if self.cluster is not None:
+            refuse_few(coding, self.title, self.cluster, present[self.cluster].nunique())
         if why := separation(rows, self.factors, category[first], matrix):
             raise Undefined(f"{self.title}: {why}, so an odds ratio is infinite and the model has no estimate")
         counts = np.bincount(row).astype(float)
@@ -136,8 +140,6 @@ class OrdinalRegression:
             return bread[: model.k_vars, : model.k_vars], 0
         who = present.groupby(self.cluster, observed=True, sort=False).ngroup().to_numpy()
         clusters = int(who.max()) + 1
-        if clusters < 2:
-            raise Undefined(f"{self.title}: one {self.cluster}; clustered standard errors need at least two")
         times = sparse.csr_array((np.ones(len(row)), (who, row)), shape=(clusters, len(model.counts)))
         scores: Floats = np.asarray(times @ model.score_obs(params))
         whole: Floats = bread @ (scores.T @ scores) @ bread * (clusters / (clusters - 1))
@@ -154,7 +156,9 @@ class OrdinalRegression:
     ) -> OrdinalFit:
         """The fit in tables."""
         beta = params[: model.k_vars]
-        tests = wald_tests(coding, beta, covariance, self.title, self.cluster, clusters)
+        tests = wald_tests(coding, beta, covariance, self.title)
+        if self.cluster is not None:
+            tests = clustered(tests, clusters)
         thresholds = model.transform_threshold_params(params)[1:-1] - float(coding.at_first @ beta)
         steps = [f"{low:g}|{high:g}" for low, high in pairwise(answers)]
         cautions = []
@@ -164,7 +168,7 @@ class OrdinalRegression:
             )
         return OrdinalFit(
             tests,
-            self.odds_ratios(coding, beta, covariance),
+            self.odds_ratios(coding, beta, covariance, clusters),
             pd.DataFrame({"threshold": steps, "value": thresholds}),
             int(model.counts.sum()),
             clusters,
@@ -172,9 +176,9 @@ class OrdinalRegression:
             tuple(cautions),
         )
 
-    def odds_ratios(self, coding: Coding, beta: Floats, covariance: Floats) -> pd.DataFrame:
+    def odds_ratios(self, coding: Coding, beta: Floats, covariance: Floats, clusters: int) -> pd.DataFrame:
         """Each level against its factor's first."""
-        reach = float(stats.norm.ppf((1 + self.confidence) / 2))
+        reach = float(stats.t.ppf((1 + self.confidence) / 2, clusters - 1 if clusters else np.inf))
         entries = []
         for factor, levels in zip(coding.factors, coding.levels, strict=True):
             contrast = coding.against_first(factor)

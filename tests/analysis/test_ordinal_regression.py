@@ -104,6 +104,39 @@ def test_clustered_errors_are_statsmodels_row_by_row(wine: pd.DataFrame) -> None
     assert fit.clusters == 9 and fit.cautions == ()
 
 
+def test_clustered_tests_are_hotellings(wine: pd.DataFrame) -> None:
+    """T squared of q means of G judges is (G - 1) q / (G - q) times F; one coefficient has t with G - 1."""
+    bottles = wine.assign(bottle=[f"b{number % 8 // 2}" for number in range(72)])
+    (row,) = OrdinalRegression("rating", ("bottle",), "judge")(bottles).to_dict("records")
+    assert (row["df"], row["df2"]) == (3, 6)
+    assert row["F"] == pytest.approx(6 / (8 * 3) * row["chi2"], rel=1e-12)
+    assert row["p"] == pytest.approx(stats.f.sf(row["F"], 3, 6), rel=1e-12)
+    fit = OrdinalRegression("rating", ("temp",), "judge", confidence=0.9).fit(wine)
+    (odds,), (test,) = fit.odds_ratios.to_dict("records"), fit.tests.to_dict("records")
+    t = odds["log_odds"] / odds["se"]
+    assert (test["F"], test["df2"]) == (pytest.approx(t**2), 8)
+    assert test["p"] == pytest.approx(2 * stats.t.sf(abs(t), 8), rel=1e-9)
+    reach = stats.t.ppf(0.95, 8) * odds["se"]
+    expected = np.exp([odds["log_odds"] - reach, odds["log_odds"] + reach])
+    assert (odds["ci_low"], odds["ci_high"]) == pytest.approx(tuple(expected))
+    alone = OrdinalRegression("rating", ("temp",))(wine).iloc[0]
+    assert np.isnan(alone["F"]) and alone["p"] == pytest.approx(stats.chi2.sf(alone["chi2"], 1))
+
+
+def test_many_pictures_of_few_people_are_no_effect() -> None:
+    """20 people, 9 pictures, no effect: chi-squared would find one in more than a quarter of studies."""
+    random, found, taken = np.random.default_rng(29), 0, 0
+    for _ in range(40):
+        answers = np.clip(np.round(4 + random.normal(0, 1, (20, 1)) + random.normal(0, 1.2, (20, 9))), 1, 7)
+        frame = pd.DataFrame(
+            {"rating": answers.ravel(), "who": np.repeat(np.arange(20), 9), "level": [*"abcdefghi"] * 20}
+        )
+        row = OrdinalRegression("rating", ("level",), "who")(frame).iloc[0]
+        found += row["p"] < 0.05
+        taken += stats.chi2.sf(row["chi2"], 8) < 0.05
+    assert found <= 5 and taken >= 8
+
+
 def test_row_order_names_and_a_shift_of_the_scale_change_nothing(wine: pd.DataFrame) -> None:
     """Also not the gap that an unused answer leaves."""
     statistic = OrdinalRegression("rating", ("temp", "contact"), "judge", interactions=True)
@@ -153,7 +186,7 @@ def test_people_too_few_for_clustered_errors(wine: pd.DataFrame) -> None:
         OrdinalRegression("rating", ("temp",), "judge")(wine.assign(judge="me"))
     bottles = wine.assign(bottle=[str(number % 8) for number in range(72)])
     three = bottles.assign(judge=wine["judge"].str[-1].astype(int) // 3)
-    with pytest.raises(Undefined, match=r"singular \(3 judges for 7 degrees of freedom\)"):
+    with pytest.raises(Undefined, match=r"3 judges for the 7 degrees of freedom of bottle; .* need more judges"):
         OrdinalRegression("rating", ("bottle",), "judge")(three)
     fit = OrdinalRegression("rating", ("temp",), "judge").fit(three)
     assert fit.cautions == ("3 judges for 5 parameters; clustered standard errors are too small then",)
