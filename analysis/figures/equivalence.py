@@ -62,8 +62,8 @@ def forest(part: Sequence[Judged], study: StudyInfo, number: int) -> Drawing:
         caption = (
             f"Are they rated alike? {sentence_case(question.name)}: differences with {percent(level)} confidence "
             f"intervals. Band: the margin of ±{part[0].margin:g} declared before the data. Equivalent (blue disc): "
-            "the interval lies inside the band. Different (square): the two-sided test says so. Both (diamond): a difference "
-            "smaller than matters. Undecided (open circle): too few answers to say either."
+            "the interval lies inside the band. Different (square): the two-sided test says so. Both (diamond): a "
+            "difference smaller than matters. Undecided (open circle): too few answers to say either."
         )
         return drawn(figure, f"figure-equivalence-{number}", caption)
 

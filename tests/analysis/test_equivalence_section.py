@@ -72,7 +72,7 @@ def test_one_margin_for_all(section: Made) -> None:
     assert (mine["verdict"], mine["margin"], mine["samples"]) == ("undecided", 0.5, "M1 vs M4")
     assert [drawing.stem for drawing in made.drawings] == [f"figure-equivalence-{number}" for number in (1, 2, 3)]
     assert made.summary[0] == (
-        "Translucent: of 15 pairs, 12 different and 3 undecided by a margin of ±0.5 steps. "
+        "Translucent, margin ±0.5 steps: of 15 pairs 12 different, perhaps by as much as the margin; 3 undecided. "
         "No pair was shown to be alike."
     )
     assert any("M = 0.45, t(43) = −0.16, p = .437, 90% CI [−0.03, 0.94], undecided" in s for s in made.sentences)
@@ -103,7 +103,7 @@ def test_a_question_without_a_margin_has_a_sentence(section: Made) -> None:
     pairs = pairs_of(made)
     assert {pair["question"] for pair in pairs} == set(QUESTIONS) - {"translucent"}
     assert made.warnings[0].startswith("Question “translucent” has no margin in [analysis.equivalence]")
-    assert "±1 steps for “realistic” and ±1.5 steps for “varnished”" in made.body
+    assert "±1 step for “realistic” and ±1.5 steps for “varnished”" in made.body
     assert {"equivalent", "both"} & {pair["verdict"] for pair in pairs}
 
 
