@@ -64,16 +64,18 @@ def table_of_cells(cells: pd.DataFrame) -> Table:
         by_question = part.set_index("question")
         levels = (true_minus(str(part["levels"].iloc[0])),) if with_levels else ()
         rows.append((str(name), *levels, *(in_words(by_question.loc[question]) for question in questions)))
-    legend = '"40 of 44": 40 answers are analysed of 44 people who were to rate it. '
-    if (cells["n_expected"] == cells["n_analysed"]).all():
-        legend = "Answers are fewer where people rated only some of the pictures. "
+    legend = "Answers are fewer where people rated only some of the pictures."
+    fewer = cells[cells["n_analysed"] < cells["n_expected"]]
+    if len(fewer):
+        used, asked = fewer.iloc[0][["n_analysed", "n_expected"]]
+        legend = f'"{in_words(fewer.iloc[0])}": {used} answers are analysed of {asked} people who were to rate it.'
     return Table(
         "table-cells",
         "Answers analysed, by picture and question",
         ("Picture", *(("Levels",) if with_levels else ()), *questions),
         tuple(rows),
         text_columns=2 if with_levels else 1,
-        note=f"{legend}Missing answers: tables/cells.csv.",
+        note=f"{legend} Missing answers: tables/cells.csv.",
     )
 
 

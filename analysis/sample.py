@@ -7,6 +7,7 @@ from pathlib import Path
 
 import pandas as pd
 
+from analysis.absent import with_absent
 from analysis.labels import natural_order
 from analysis.plan import AnalysisPlan, Exclusions, Mode
 from analysis.quality import answer_times, answers, failed_checks, same_answer_share
@@ -71,6 +72,8 @@ def draw_sample(ratings: pd.DataFrame, plan: AnalysisPlan, participants: Path | 
     shown = ratings[is_first_showing(ratings)]
     answered = shown.dropna(subset="rating")
     mode = choose_mode(answered, plan)
+    ratings = with_absent(ratings, mode)
+    shown = ratings[is_first_showing(ratings)]
     started, finished, withdrawn = people(ratings, answered, mode, participants)
     left_out = [LeftOut(who, "withdrew", "withdrew") for who in withdrawn]
     if plan.completers_only:

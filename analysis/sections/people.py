@@ -12,7 +12,7 @@ from analysis.sample import Sample
 from analysis.section import Section, rendered
 from analysis.standing_out import summary_of, table_of_those, with_reasons
 from analysis.tables import Table
-from analysis.wording import joined, percent
+from analysis.wording import counted, joined, percent
 
 LEFT_OUT = ("participant", "rule", "reason")
 
@@ -29,6 +29,7 @@ def people(evidence: Evidence) -> Section:
     )
     everywhere = in_every_cell(cells)
     said = summary_of(quality)
+    said_first = [*not_independent(evidence), *look_alikes(evidence.ratings)]
     body = rendered(
         "people",
         sample=sample,
@@ -42,7 +43,7 @@ def people(evidence: Evidence) -> Section:
         odd=table_of_those(quality, bound),
     )
     tables = {"cells": cells, "participants": told(quality), "excluded": left_out}
-    return Section("people", "People", body, tables, summary=(said,), warnings=tuple(look_alikes(evidence.ratings)))
+    return Section("people", "People", body, tables, summary=(said,), warnings=tuple(said_first))
 
 
 def told(quality: pd.DataFrame) -> pd.DataFrame:
@@ -79,6 +80,20 @@ def declared_rules(plan: AnalysisPlan) -> dict[str, str]:
     if rules.same_answer_share is not None:
         said["same_answer_share"] = f"one answer in {percent(rules.same_answer_share)} or more of the ratings"
     return said
+
+
+def not_independent(evidence: Evidence) -> list[str]:
+    """Samples declared independent that are of the same people."""
+    if evidence.plan.mode != "independent":
+        return []
+    shared = [each for each in evidence.main if each.answers["participant"].duplicated().any()]
+    if not shared:
+        return []
+    return [
+        'mode = "independent" is declared, but people rated several of the pictures that are compared with each other '
+        f"({len(shared)} of {counted(len(evidence.main), 'row')}): samples of the same people are not independent, and "
+        'their p values are wrong; mode = "repeated" fits.'
+    ]
 
 
 def look_alikes(ratings: pd.DataFrame) -> list[str]:
