@@ -124,8 +124,8 @@ def chosen(designs: Sequence[RowDesign], plan: AnalysisPlan) -> list[str]:
         return []
     return [
         f"{joined(titles)}: the same ratings pick the best of {len(designs[0].own)} own pictures, so that the test "
-        f"finds a difference by chance alone in more than {100 * plan.alpha:g}% of studies; not all of its power is an "
-        "effect's."
+        f"finds a difference by chance alone in more than {100 * plan.alpha:g}% of studies (before any adjustment); "
+        "not all of its power is an effect's."
     ]
 
 

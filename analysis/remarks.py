@@ -41,7 +41,8 @@ def remarks(
     if own > 1 and any(each.row.picked_best for each in found):
         said.append(
             f'The "best" of {own} own pictures was picked by the same ratings: the choice flatters its mean, '
-            f"and comparisons with it find a difference by chance alone in more than {percent(plan.alpha)} of studies."
+            f"and comparisons with it find a difference by chance alone in more than {percent(plan.alpha)} of studies "
+            "(before any adjustment)."
         )
     tested = [each.p for each in found if each.p is not None]
     if plan.adjust == "none" and len(tested) > 1 and min(tested) < plan.alpha:

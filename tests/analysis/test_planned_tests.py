@@ -270,7 +270,7 @@ def test_a_picture_picked_by_the_ratings_is_said_to_differ_by_chance(tmp_path: P
     study = one_at_a_time(tmp_path, alpha=0.1, comparison=[COMPARED])
     assert planned(study)[1] == [
         "Others: the same ratings pick the best of 9 own pictures, so that the test finds a difference by chance alone "
-        "in more than 10% of studies; not all of its power is an effect's."
+        "in more than 10% of studies (before any adjustment); not all of its power is an effect's."
     ]
     named = COMPARED | {"stimuli": ["img10", "img11"]}
     assert planned(one_at_a_time(tmp_path / "named", comparison=[named]))[1] == []
