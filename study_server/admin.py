@@ -101,11 +101,11 @@ def report(request: Request, site: Unlocked, path: str) -> Response:
     with site.database.reading() as connection:
         figures = counts.overview(connection, site.study.identity, site.mode, time.time(), release_s(site.study))
     if not figures["ratings"]:
-        return sorry(request, 200, "There are no ratings yet, so there is nothing to report.")
+        return sorry(request, 409, "There are no ratings yet, so there is nothing to report.")
     try:
         folder = site.reporter.folder(anew=path in ("", "index.html"))
     except BadInput as problem:
-        return sorry(request, 200, str(problem))
+        return sorry(request, 409, str(problem))
     wanted = file_inside(folder, path or "index.html")
     return FileResponse(wanted) if wanted else sorry(request, 404, "The report has no such file.")
 

@@ -96,8 +96,8 @@ def is_text(text: str) -> bool:
 
 
 def wants_json(request: Request) -> bool:
-    """Whether the caller is a program."""
-    return "application/json" in request.headers.get("accept", "")
+    """Whether the caller is a program: it says so, or wants a file that only programs read."""
+    return "application/json" in request.headers.get("accept", "") or request.url.path.endswith(".json")
 
 
 def answer(request: Request, template: str, data: Mapping[str, Any], http_status: int = 200) -> Response:

@@ -94,6 +94,16 @@ def test_no_ratings_no_report(study: Path) -> None:
     assert not calls
 
 
+@pytest.mark.parametrize(("path", "kind"), [("", "text/html"), ("results.json", "application/json")])
+def test_no_report_is_no_success(study: Path, path: str, kind: str) -> None:
+    """A program that fetches results.json must not take the apology for results."""
+    with served(study, make_report=lambda: study) as url:
+        headers = {"Accept": "*/*", "Authorization": f"Bearer {admin_secret(study)}"}
+        response = httpx.get(f"{url}/admin/report/{path}", headers=headers)
+    assert response.status_code == 409 and response.headers["content-type"].startswith(kind)
+    assert "There are no ratings yet" in response.text
+
+
 def test_the_report_is_written_anew_and_nothing_else_is_served(study: Path) -> None:
     folder = study / "report"
     written = []
