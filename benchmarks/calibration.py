@@ -1,29 +1,36 @@
 """Do the tests reject as often as they say, and do the intervals cover? `python -m benchmarks.calibration`.
 
-The table of docs/calibration.md. Simulation i of an experiment depends on the seed, the experiment's name and i alone,
-so a run that was stopped is taken up where calibration.json ends. Delete that file after changing a statistic.
+Writes calibration.json beside it, the table of docs/calibration.md, and the rates in that page's words; prints the
+sentences that the table no longer bears out, which a person then rewrites, and returns 1 if there are any.
+
+What is drawn depends on the seed, the experiment's name and the number of the draw alone, so a run that was stopped is
+taken up where calibration.json ends; not if a statistic or a library that it calls has changed since.
 """
 
 import argparse
+import ast
+import hashlib
 import json
 import zlib
 from collections import Counter
-from collections.abc import Iterable, Mapping
+from collections.abc import Mapping
 from dataclasses import dataclass, field
+from importlib.metadata import version
 from pathlib import Path
 from typing import Any
 
 import numpy as np
-from statsmodels.stats.proportion import proportion_confint
 from tqdm import tqdm
 
-from analysis.statistics.undefined import Undefined
-from benchmarks.calibration_cases import ALPHA, Draw, Judge
-from benchmarks.calibration_experiments import experiments
+from analysis.statistics.undefined import Floats, Undefined
+from benchmarks import calibration_page as page
+from benchmarks.calibration_experiments import Experiment, Says, experiments
 
-RESULTS = Path(__file__).parent / "calibration.json"
-SIMULATIONS, SEED, PARTS = 600, 2011, 20
-HEAD = ("what is claimed", "ratings", "studies", "stated", "found", "Monte-Carlo 95%", "verdict")
+ROOT = Path(__file__).parents[1]
+RESULTS = ROOT / "benchmarks" / "calibration.json"
+SOURCES = ("analysis/statistics/*.py", "benchmarks/calibration_*.py")
+LIBRARIES = ("numpy", "scipy", "statsmodels", "pingouin", "krippendorff")
+SEED, PARTS = 2011, 20
 
 
 @dataclass
@@ -34,69 +41,53 @@ class Tally:
     silent: int = 0
     hits: Counter[str] = field(default_factory=Counter)
 
-    def add(self, said: Mapping[str, bool] | None) -> None:
-        """One study more; None where a statistic had no value."""
-        self.done += 1
-        self.silent += said is None
-        self.hits.update({claim: int(held) for claim, held in (said or {}).items()})
+    def add(self, said: Says | None, studies: int = 1) -> None:
+        """As many studies more; None where a statistic had no value. A study with one NaN counts for no claim."""
+        self.done += studies
+        if said is None:
+            self.silent += studies
+            return
+        held: Floats = np.array([np.broadcast_to(np.asarray(each, np.float64), studies) for each in said.values()])
+        spoke = ~np.isnan(held).any(axis=0)
+        self.silent += studies - int(spoke.sum())
+        self.hits.update({claim: int(row[spoke].sum()) for claim, row in zip(said, held, strict=True)})
 
 
-def simulate(tally: Tally, name: str, draw: Draw, judge: Judge, until: int, seed: int) -> None:
-    """Studies number `tally.done` to `until` of an experiment."""
-    for number in range(tally.done, until):
-        frame = draw(np.random.default_rng([seed, zlib.crc32(name.encode()), number]))
+def simulate(tally: Tally, each: Experiment, until: int, seed: int) -> None:
+    """Studies number `tally.done` to `until` of an experiment, both multiples of its `at_once`."""
+    for number in range(tally.done // each.at_once, until // each.at_once):
+        drawn = each.draw(np.random.default_rng([seed, zlib.crc32(each.name.encode()), number]))
         try:
-            tally.add(judge(frame))
+            tally.add(each.judge(drawn), each.at_once)
         except Undefined:
-            tally.add(None)
+            tally.add(None, each.at_once)
 
 
-def stated(claim: str) -> float:
-    """The rate that a claim promises: the coverage it names, else the level of the tests."""
-    return {"95%": 0.95, "90%": 0.90}.get(claim[:3], ALPHA)
+def fingerprint() -> str:
+    """Of what the rates depend on: the statistics' and the study's source, less comments and docstrings, and libraries.
+
+    calibration_page.py only shows them.
+    """
+    digest = hashlib.sha256(" ".join(f"{name} {version(name)}" for name in LIBRARIES).encode())
+    for path in sorted(path for pattern in SOURCES for path in ROOT.glob(pattern)):
+        if path.stem != "calibration_page":
+            digest.update(path.relative_to(ROOT).as_posix().encode() + code_of(path.read_text(encoding="utf-8")))
+    return digest.hexdigest()
 
 
-def verdict(claim: str, hits: int, n: int) -> str:
-    """In words. Bradley (1978), Br. J. Math. Stat. Psychol. 31: within half of alpha of alpha is a small fault."""
-    goal, (low, high) = stated(claim), proportion_confint(hits, n, method="wilson")
-    test = goal < 0.5
-    if low <= goal <= high:
-        return "keeps its level" if test else "covers"
-    small = abs(hits / n - goal) <= 0.5 * min(goal, 1 - goal)
-    if test:
-        return ("slightly " if small else "") + ("liberal" if low > goal else "cautious")
-    return ("slightly " if small else "") + ("too narrow" if high < goal else "wider than need be")
+def code_of(source: str) -> bytes:
+    """A module's syntax without comments, layout and docstrings."""
+    tree = ast.parse(source)
+    for node in ast.walk(tree):
+        if isinstance(node, ast.Module | ast.ClassDef | ast.FunctionDef) and ast.get_docstring(node) is not None:
+            node.body = node.body[1:] or [ast.Pass()]
+    return ast.dump(tree).encode()
 
 
-def table(tallies: Mapping[str, Tally]) -> list[tuple[str, ...]]:
-    """A row per claim and data: tests first, the rows of one claim together."""
-    found = [(claim, name, tally) for name, tally in tallies.items() for claim in tally.hits]
-    order = list(dict.fromkeys(claim for claim, _, _ in found))
-    found.sort(key=lambda entry: (stated(entry[0]) > 0.5, order.index(entry[0])))
-    rows = []
-    for claim, name, tally in found:
-        hits, n = tally.hits[claim], tally.done - tally.silent
-        low, high = proportion_confint(hits, n, method="wilson")
-        ratings, interval = name.rsplit(": ", 1)[-1], f"{low:.1%} to {high:.1%}"
-        rows.append(
-            (claim, ratings, str(n), f"{stated(claim):.0%}", f"{hits / n:.1%}", interval, verdict(claim, hits, n))
-        )
-    return rows
-
-
-def markdown(rows: Iterable[tuple[str, ...]]) -> str:
-    """A claim is named once, above its rows."""
-    lines, last = [f"| {' | '.join(HEAD)} |", "|" + "---|" * len(HEAD)], ""
-    for claim, *rest in rows:
-        lines.append(f"| {' | '.join(['' if claim == last else claim, *rest])} |")
-        last = claim
-    return "\n".join(lines)
-
-
-def read(path: Path, seed: int) -> dict[str, Tally]:
-    """What an earlier run of the same seed has found; nothing where there was none."""
+def read(path: Path, seed: int, of: str | None = None) -> dict[str, Tally]:
+    """What an earlier run of the same seed has found; nothing where there was none, or of another fingerprint `of`."""
     earlier: dict[str, Any] = json.loads(path.read_text(encoding="utf-8")) if path.is_file() else {}
-    if earlier.get("seed") != seed:
+    if earlier.get("seed") != seed or of not in (None, earlier.get("statistics")):
         return {}
     return {
         name: Tally(entry["studies"], entry["without_value"], Counter(entry["hits"]))
@@ -104,38 +95,54 @@ def read(path: Path, seed: int) -> dict[str, Tally]:
     }
 
 
-def write(path: Path, seed: int, tallies: Mapping[str, Tally]) -> None:
+def write(path: Path, seed: int, of: str, tallies: Mapping[str, Tally]) -> None:
     """All tallies, to be taken up again."""
     entries = {
         name: {"studies": tally.done, "without_value": tally.silent, "hits": dict(tally.hits)}
         for name, tally in tallies.items()
     }
-    path.write_text(json.dumps({"seed": seed, "experiments": entries}, indent=1) + "\n", encoding="utf-8")
+    kept = {"seed": seed, "statistics": of, "experiments": entries}
+    path.write_text(json.dumps(kept, indent=1) + "\n", encoding="utf-8")
 
 
-def main() -> None:
-    """Simulate, save, print."""
+def counts_of(tallies: Mapping[str, Tally]) -> list[page.Count]:
+    """Every claim of every experiment that has one."""
+    return [
+        page.Count(claim, name.rsplit(": ", 1)[-1], hits, tally.done - tally.silent)
+        for name, tally in tallies.items()
+        for claim, hits in tally.hits.items()
+        if tally.done > tally.silent
+    ]
+
+
+def run(out: Path, seed: int, share: float) -> dict[str, Tally]:
+    """Every experiment to that share of its studies, saved as it goes."""
+    planned, of = experiments(), fingerprint()
+    earlier = read(out, seed, of)
+    tallies = {each.name: earlier.get(each.name, Tally()) for each in planned}
+    for part in tqdm(range(1, PARTS + 1), unit="part", desc="calibration", dynamic_ncols=True):
+        # a little of every experiment in turn: the time left is then that of all of them
+        for each in planned:
+            draws = max(1, round(share * each.studies / each.at_once))
+            simulate(tallies[each.name], each, round(draws * part / PARTS) * each.at_once, seed)
+        write(out, seed, of, tallies)
+    return tallies
+
+
+def main() -> int:
+    """Simulate, save, show; 1 where the page's words no longer fit."""
     parser = argparse.ArgumentParser(description=__doc__)
-    parser.add_argument("--simulations", type=int, default=SIMULATIONS, help="studies of each experiment")
+    parser.add_argument("--share", type=float, default=1.0, help="of the studies of a full run, above 0")
     parser.add_argument("--seed", type=int, default=SEED)
     parser.add_argument("--out", type=Path, default=RESULTS)
+    parser.add_argument("--page", type=Path, default=page.PAGE)
     asked = parser.parse_args()
-    planned = experiments()
-    earlier = read(asked.out, asked.seed)
-    tallies = {each.name: earlier.get(each.name, Tally()) for each in planned}
-    goals = {each.name: max(1, round(asked.simulations * each.share)) for each in planned}
-    left = sum(max(0, goals[name] - tally.done) for name, tally in tallies.items())
-    with tqdm(total=left, unit="study", smoothing=0.02) as bar:
-        # a little of every experiment in turn: the time left is then that of all of them
-        for part in range(1, PARTS + 1):
-            for each in planned:
-                tally, before = tallies[each.name], tallies[each.name].done
-                until = round(goals[each.name] * part / PARTS)
-                simulate(tally, each.name, each.draw, each.judge, until, asked.seed)
-                bar.update(tally.done - before)
-            write(asked.out, asked.seed, tallies)
-    print(markdown(table(tallies)))
+    counts = counts_of(run(asked.out, asked.seed, asked.share))
+    text, unfit = page.updated(asked.page.read_text(encoding="utf-8"), counts)
+    asked.page.write_text(text, encoding="utf-8")
+    print("\n".join(unfit) or f"every rate in the words of {asked.page.name} is the table's, and its verdict too")
+    return 1 if unfit else 0
 
 
 if __name__ == "__main__":
-    main()
+    raise SystemExit(main())

@@ -2,11 +2,11 @@
 
     answer = mean of the picture + person + noise, on a rating scale rounded and clipped to 1..7
 
-as study_server/raters.py answers, with its spreads. Every
-statistic is the public object, called as the report calls it.
+as study_server/raters.py answers, with its spreads. The statistics
+here are the public objects, called as the report calls them; those quick enough for thousands of studies are judged by
+calibration_batches.py.
 """
 
-from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
 from functools import cached_property
 
@@ -17,26 +17,21 @@ from scipy import stats
 from analysis.statistics.agreement import IntraclassCorrelation, KrippendorffAlpha
 from analysis.statistics.anova import OneWayAnova, RepeatedMeasuresAnova
 from analysis.statistics.contrasts import PairedContrasts
-from analysis.statistics.equivalence import Equivalence
-from analysis.statistics.factorial import FactorialAnova
-from analysis.statistics.friedman import Friedman
+from analysis.statistics.cues import CueRegression, CueSlopes
 from analysis.statistics.intervals import MeanIntervals
 from analysis.statistics.mixed import MixedModel
 from analysis.statistics.ordinal import OrdinalRegression
 from analysis.statistics.tukey import TukeyHSD
 from analysis.statistics.undefined import Floats
 from analysis.statistics.wilcoxon import SignedRanks
+from benchmarks.calibration_batches import ALPHA
 
-ALPHA = 0.05
 STEPS = 7
 PERSON_SD, NOISE_SD = 0.7, 0.9  # study_server.raters.Effects
 PICTURE_SD = 1.0
 BETWEEN = {"value": "rating", "group": "condition"}
 WITHIN = {"value": "rating", "within": "condition", "subject": "participant"}
 UNEQUAL = (0.4, 0.4, 0.4, 2.0)  # one picture divides people: epsilon .405, sphericity is far off
-
-Draw = Callable[[np.random.Generator], pd.DataFrame]
-Judge = Callable[[pd.DataFrame], Mapping[str, bool]]
 
 
 @dataclass(frozen=True)
@@ -53,13 +48,21 @@ class Crowd:
     noises: tuple[float, ...] | None = None
     independent: bool = False
 
+    def answers(self, random: np.random.Generator, studies: int) -> Floats:
+        """(people, studies, pictures)."""
+        n, k = self.people, len(self.means)
+        person = PERSON_SD * random.standard_normal((n, studies, k if self.independent else 1))
+        noise = np.array(self.noises or (NOISE_SD,)) * random.standard_normal((n, studies, k))
+        latent = np.array(self.means) + person + noise
+        return np.clip(np.rint(latent), 1, STEPS) if self.steps else latent
+
     def frame(self, random: np.random.Generator) -> pd.DataFrame:
         """One study: `participant, condition, rating`."""
-        n, k = self.people, len(self.means)
-        person = PERSON_SD * random.standard_normal((n, k if self.independent else 1))
-        noise = np.array(self.noises or (NOISE_SD,)) * random.standard_normal((n, k))
-        latent = np.array(self.means) + person + noise
-        rating = np.clip(np.rint(latent), 1, STEPS) if self.steps else latent
+        return self.long(self.answers(random, 1)[:, 0])
+
+    def long(self, rating: Floats) -> pd.DataFrame:
+        """Answers of one study (people, pictures) as rows `participant, condition, rating`."""
+        n, k = rating.shape
         who = np.arange(n * k) if self.independent else np.repeat(np.arange(n), k)
         condition = np.tile([f"M{place}" for place in range(1, k + 1)], n)
         return pd.DataFrame({"participant": who, "condition": condition, "rating": rating.ravel()})
@@ -75,30 +78,6 @@ def expected(mean: Floats, spread: Floats | float) -> Floats:
     """Mean answer on 1..7 where the latent answer is normal: 1 + the probabilities of at least 2, 3, ..., 7."""
     edges = np.arange(1, STEPS) + 0.5
     return np.asarray(1 + stats.norm.sf((edges - mean[:, None]) / np.broadcast_to(spread, mean.shape)[:, None]).sum(1))
-
-
-def no_effect_between(frame: pd.DataFrame, crowd: Crowd) -> dict[str, bool]:
-    """Independent samples of one population."""
-    mean = MeanIntervals(**BETWEEN)(frame).iloc[0]
-    return {
-        "one-way F": OneWayAnova(**BETWEEN)(frame)["p"].iloc[0] < ALPHA,
-        "Tukey, independent samples, any pair": (TukeyHSD(**BETWEEN)(frame)["p"] < ALPHA).any(),
-        "95% CI of a mean, between people": covers(mean, crowd.truth[0]),
-    }
-
-
-def no_effect_within(frame: pd.DataFrame) -> dict[str, bool]:
-    """The same people, all pictures alike in the mean."""
-    anova = RepeatedMeasuresAnova(**WITHIN)(frame).iloc[0]
-    tukey = TukeyHSD("rating", "condition", "participant")(frame)
-    return {
-        "repeated-measures F, uncorrected": anova["p"] < ALPHA,
-        "repeated-measures F, Greenhouse-Geisser": anova["p_gg"] < ALPHA,
-        "repeated-measures F, Huynh-Feldt": anova["p_hf"] < ALPHA,
-        "Friedman": Friedman(**WITHIN)(frame)["p"].iloc[0] < ALPHA,
-        "paired t tests with Holm, any pair": (PairedContrasts(**WITHIN)(frame)["p_holm"] < ALPHA).any(),
-        "Tukey, repeated measures, any pair": (tukey["p"] < ALPHA).any(),
-    }
 
 
 def effect_between(frame: pd.DataFrame, crowd: Crowd) -> dict[str, bool]:
@@ -135,13 +114,6 @@ def effect_within(frame: pd.DataFrame, crowd: Crowd) -> dict[str, bool]:
     return found
 
 
-def crossed(frame: pd.DataFrame) -> dict[str, bool]:
-    """Six pictures as a 2 x 3 factorial: the interaction."""
-    place = frame["condition"].str[1:].astype(int) - 1
-    table = FactorialAnova("rating", ("a", "b"), "participant")(frame.assign(a=place // 3, b=place % 3))
-    return {"2 x 3 interaction within people, Greenhouse-Geisser": table["p_gg"].iloc[-1] < ALPHA}
-
-
 def models(frame: pd.DataFrame) -> dict[str, bool]:
     """The Wald tests of the two models; every level is one picture, so the mixed model has people's variance alone."""
     found = {"mixed model, Wald": MixedModel("rating", ("condition",), "participant", None)(frame)}
@@ -174,11 +146,24 @@ def two_alike(frame: pd.DataFrame) -> dict[str, bool]:
     return {"Wilcoxon, signed ranks": SignedRanks(**WITHIN)(frame)["p"].iloc[0] < ALPHA}
 
 
-def at_the_margin(frame: pd.DataFrame, crowd: Crowd) -> dict[str, bool]:
-    """Two pictures exactly one margin apart: calling them equivalent is an error."""
-    subject, name = (None, "Welch") if crowd.independent else ("participant", "paired")
-    test = Equivalence("rating", "condition", subject, margin=float(abs(crowd.truth[1] - crowd.truth[0])))
-    return {f"TOST at the margin, {name}": test(frame)["p_equivalence"].iloc[0] < ALPHA}
+def random_cues(random: np.random.Generator, people: int, pictures: int) -> pd.DataFrame:
+    """Pictures of unlike means with three cues, `a, b, c`, drawn without regard to them."""
+    means = 4 + PICTURE_SD * random.standard_normal(pictures)
+    frame = Crowd("", people, tuple(means), steps=True).frame(random)
+    cues = pd.DataFrame(random.standard_normal((pictures, 3)), columns=["a", "b", "c"])
+    return pd.concat([frame, cues.iloc[np.tile(np.arange(pictures), people)].reset_index(drop=True)], axis=1)
+
+
+def cues_of_chance(frame: pd.DataFrame) -> dict[str, bool]:
+    """Is a cue found that has nothing to do with the ratings?"""
+    columns = ("rating", "participant", "condition")
+    alone = CueSlopes(*columns, ("a",))(frame).iloc[0]
+    together = CueRegression(*columns, ("a", "b", "c"))(frame).iloc[0]
+    return {
+        "a cue drawn at random, r with the pictures' means": alone["p_pictures"] < ALPHA,
+        "a cue drawn at random, slopes of people": alone["p"] < ALPHA,
+        "a cue drawn at random, regression clustered by person": together["p"] < ALPHA,
+    }
 
 
 @dataclass(frozen=True)
@@ -224,11 +209,11 @@ class Gallery:
 
 
 def agreement(frame: pd.DataFrame, gallery: Gallery) -> dict[str, bool]:
-    """Both coefficients of agreement; alpha's bootstrap with fewer resamples than the report's 1000."""
+    """Both coefficients of agreement, as the report computes them."""
     icc = IntraclassCorrelation("rating", "condition", "participant")(frame).set_index("type").loc["ICC(A,1)"]
     found = {"95% CI of ICC(A,1)": covers(icc, gallery.icc)}
     if gallery.steps:
-        alpha = KrippendorffAlpha("rating", "condition", "participant", resamples=200)(frame).iloc[0]
+        alpha = KrippendorffAlpha("rating", "condition", "participant")(frame).iloc[0]
         found["95% CI of Krippendorff's alpha, bootstrap"] = covers(alpha, gallery.alpha)
     return found
 

@@ -169,7 +169,7 @@ def table_of_slopes(found: Sequence[CueFindings], level: str) -> Table | None:
         if one.slopes is not None
         for place, cue in enumerate(one.slopes.to_dict("records"))
     )
-    head = ("Question", "Cue", "r of means", "Holm of r", "Slope", level, "t", "df", "p", "Holm of p")
+    head = ("Question", "Cue", "r of means", "p of r, Holm", "Slope", level, "t", "df", "p", "p, Holm")
     note = (
         "r: correlation of the pictures’ mean ratings with the cue; its p tells whether other pictures would show it. "
         "Slope: steps of the scale for one standard deviation of the cue between the pictures, the mean of every "
