@@ -3,11 +3,13 @@
 import json
 from pathlib import Path
 
+import krippendorff
 import numpy as np
 import pandas as pd
 import pytest
 
 from analysis import Equivalence, IntraclassCorrelation, KrippendorffAlpha
+from analysis.reliability import agreement, icc_entry
 from analysis.statistics.undefined import Undefined
 from fakesss.problem import BadInput
 
@@ -99,3 +101,45 @@ def test_the_bootstrap_is_seeded() -> None:
     )
     first, second = (KrippendorffAlpha("c", "b", "a", resamples=50, seed=9)(frame) for _ in range(2))
     pd.testing.assert_frame_equal(first, second)
+
+
+def test_the_report_shows_absolute_agreement() -> None:
+    """ICC(A,1) and ICC(A,k) of Shrout and Fleiss: judges' levels count against them, as in ICC(C,.) they do not."""
+    frame = pd.read_csv(DATA / "shrout_fleiss_1979.csv")
+    entry = icc_entry(frame.rename(columns={"score": "rating", "target": "stimulus", "judge": "participant"}))
+    assert (entry["icc_a1"], entry["icc_ak"]) == pytest.approx((0.290, 0.620), abs=5e-4)
+    assert (entry["icc_a1_low"], entry["icc_a1_high"]) == pytest.approx((0.019, 0.761), abs=1e-3)
+
+
+def test_within_sd_is_the_root_of_the_mean_variance() -> None:
+    """Variances 2, 0 and 8 of three people: not the mean of their roots."""
+    entry = agreement(pd.DataFrame({"a": [1.0, 2, 5], "b": [3.0, 2, 9]}))
+    assert entry["within_sd"] == pytest.approx((10 / 3) ** 0.5)
+
+
+def test_alphas_interval_holds_95_of_100_resamples() -> None:
+    """Percentiles 2.5 and 97.5 of the library's alpha of the pictures drawn, from their raw ratings."""
+    table = np.random.default_rng(19).integers(1, 6, (5, 9)).astype(float)
+    row = KrippendorffAlpha("value", "target", "rater", resamples=200, seed=4)(
+        ratings_by(table.astype(int).tolist())
+    ).iloc[0]
+    draws = np.random.default_rng(4).integers(0, 9, (200, 9))
+    resampled = [krippendorff.alpha(reliability_data=table[:, draw], level_of_measurement="ordinal") for draw in draws]
+    assert (row["ci_low"], row["ci_high"]) == pytest.approx(tuple(np.quantile(resampled, [0.025, 0.975])), abs=1e-9)
+
+
+def test_who_shares_no_picture_is_no_rater() -> None:
+    """A fourth person whose only picture nobody else rated."""
+    frame = ratings_by([[1, 2, 3], [2, 3, 5], [1, 4, 4]])
+    alone = pd.DataFrame({"rater": [3], "target": [9], "value": [4]})
+    statistic = KrippendorffAlpha("value", "target", "rater", resamples=20)
+    pd.testing.assert_frame_equal(statistic(pd.concat([frame, alone])), statistic(frame))
+    assert statistic(frame)["n_raters"].iloc[0] == 3
+
+
+def test_alpha_of_one_picture_and_of_an_unknown_level() -> None:
+    """Of one picture alpha is 0 whatever people answer."""
+    with pytest.raises(Undefined, match=r"one target was rated by several raters; .* needs two"):
+        KrippendorffAlpha("value", "target", "rater")(ratings_by([[1], [5], [3], [7]]))
+    with pytest.raises(BadInput, match='level: "ordnial": did you mean "ordinal"'):
+        KrippendorffAlpha("value", "target", "rater", level="ordnial")(ratings_by([[1, 2], [3, 4]]))  # type: ignore[arg-type]
