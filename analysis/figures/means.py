@@ -132,7 +132,7 @@ def draw_means(axes: Axes, each: Analysed, study: StudyInfo, colour: str, joined
         file = study.picture(level.stimuli[0]).file if len(level.stimuli) == 1 else None
         if file is not None and file.is_file() and (each.row.kind != "factor" or len(table) <= PICTURED):
             place_thumbnail(axes, float(place), file, 36 if each.row.kind != "factor" else min(36, 175 / len(table)))
-        labels.append(level.label if each.row.kind == "factor" else f"{level.code}\n{folded(level.label)}")
+        labels.append(level.printed if each.row.kind == "factor" else f"{level.code}\n{folded(level.printed)}")
     pad = 42 if any(isinstance(artist, AnnotationBbox) for artist in axes.artists) else 4
     if each.row.kind == "factor":
         thinned(axes, labels)

@@ -71,7 +71,7 @@ def name_below(axes: Axes, study: StudyInfo, levels: Sequence[Level]) -> None:
         if file is not None and file.is_file():
             place_thumbnail(axes, place, file, side)
         axes.annotate(
-            level.label if total <= ALL_NAMED else folded(level.label), (place, 0), (0, -side - 8),
+            level.printed if total <= ALL_NAMED else folded(level.printed), (place, 0), (0, -side - 8),
             xycoords=("data", "axes fraction"), textcoords="offset points", ha="center", va="top", fontsize=7,
             rotation=90 if total <= ALL_NAMED else 0,
         )  # fmt: skip

@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 
 from analysis.figures.style import INK, STYLE, Drawing, drawn, folded, place_thumbnail
 from analysis.study import Picture, Question, StudyInfo
-from analysis.wording import sentence_case
+from analysis.wording import sentence_case, true_minus
 
 ACROSS, DOWN, DRAWN = 3, 20, 60  # questions beside each other, pictures in a figure, pictures drawn at all
 FINE = 11  # a scale with more steps is drawn in fifths
@@ -152,7 +152,7 @@ def name_pictures(axes: Axes, pictures: Sequence[Picture]) -> None:
         if picture.file is not None and picture.file.is_file():
             place_thumbnail(axes, row, picture.file, side=27, beside=True)
             placed = True
-    axes.set_yticks(range(len(pictures)), [folded(picture.label, 22) for picture in pictures])
+    axes.set_yticks(range(len(pictures)), [folded(true_minus(picture.label), 22) for picture in pictures])
     axes.tick_params(axis="y", pad=36 if placed else 4)
 
 

@@ -96,9 +96,9 @@ def test_every_row_has_its_models(section: Section) -> None:
 def test_the_sentence_on_agreement_names_who_stands_apart(section: Section) -> None:
     """At 10% eight of ten rows agree; the two others are named with their tests, first in the report too."""
     assert section.summary[0] == (
-        "At the 10% level ANOVA, ranks, ordinal regression and mixed model agree in 8 of 10 rows; not in Realistic vs "
-        "thickness exponent (only ranks find none) and Varnished vs thickness exponent (ANOVA and mixed model find an "
-        "effect, ranks and ordinal regression find none)."
+        "At the 10% level, each p unadjusted, ANOVA, ranks, ordinal regression and mixed model agree in 8 of 10 rows; "
+        "not in Realistic vs thickness exponent (only ranks find none) and Varnished vs thickness exponent (ANOVA and "
+        "mixed model find an effect, ranks and ordinal regression find none)."
     )
     assert section.summary[0] in section.body
     assert section.sentences[0].startswith(
@@ -157,7 +157,7 @@ def test_only_the_declared_tests_are_made(tmp_path: Path) -> None:
     """Without ordinal and mixed the section has the sentence on agreement alone."""
     section = section_of(factorial(tmp_path / "few", {"tests": ["ranks"]}))
     assert not section.tables and section.sentences == ()
-    assert section.summary[0].startswith("At the 5% level ANOVA and ranks agree")
+    assert section.summary[0].startswith("At the 5% level, each p unadjusted, ANOVA and ranks agree")
     one = section_of(factorial(tmp_path / "one", {"tests": ["ordinal"]}))
     assert set(one.tables) == {"ordinal", "odds_ratios"}
 

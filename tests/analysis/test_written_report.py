@@ -89,7 +89,7 @@ def test_the_page_says_it_in_words(thesis_report: Path) -> None:
         "F(1.67, 71.94) = 22.43, p < .001, η²G = .232, 90% CI [.132, .326]",
         "95% within-subject (Cousineau–Morey) confidence interval",
         "img01, img04, img07",
-        'The "best" own picture was picked by the same ratings',
+        'The "best" of 9 own pictures was picked by the same ratings',
     ):
         assert words in page.text
 
