@@ -53,7 +53,8 @@ def smallest(search: Search, place: int, bound: str) -> int | None:
 def why_none(search: Search, place: int) -> str:
     """Why a test has no number of people."""
     if hopeless := search.simulation.tests[place].hopeless:
-        return hopeless
+        sizes = search.simulation.sizes(place)
+        return hopeless + (valueless(search, place, max(sizes)) if sizes else "")
     below = search.bracket(place, "share").below
     if below is None:
         return "stopped before it was known"
@@ -73,7 +74,7 @@ def valueless(search: Search, place: int, people: int) -> str:
     why = "nothing varies that it could be tested against"
     if search.simulation.tests[place].difference is None:
         why += ", or the best picture is also one of those named"
-    return f"; in {many} studies of so many it has no value: {why}"
+    return f"; in {many} studies with {counted(people, 'participant')} it has no value: {why}"
 
 
 def as_frame(rows: Sequence[dict[str, Any]]) -> pd.DataFrame:

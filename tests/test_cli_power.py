@@ -183,4 +183,4 @@ def test_effects_that_drown_everything_leave_no_value(study: Path, capsys: pytes
     path.write_text("person_sd = 0.1\nnoise_sd = 0.1\n[question.translucent.slopes]\nbacklight = 400\n")
     code, out, _ = power(study, "--effects", str(path), "--most", "10", capsys=capsys)
     assert code == 0
-    assert "not reached with 10 participants: power .00; in all 400 studies of so many it has no value" in out
+    assert "not reached with 10 participants: power .00; in all 400 studies with 10 participants it has no value" in out

@@ -265,4 +265,8 @@ def test_tests_without_a_value_in_any_study_say_so() -> None:
         search.run()
         note = found_rows(search, (), 1.0)[0]["note"]
         assert note.startswith("not reached with 4 participants: power .")
-        assert f"in {share} studies of so many it has no value" in note
+        assert f"in {share} studies with 4 participants it has no value" in note
+    still = Simulation([planned(repeated_p, difference=0.0)], draw, 2, 300, 1)
+    search = Search(still, 0.8, 4)
+    search.run((3,))
+    assert "; in all 300 studies with 3 participants it has no value" in found_rows(search, (3,), 1.0)[0]["note"]
