@@ -2,14 +2,19 @@
 
 from collections.abc import Iterator
 from functools import cache
+from io import BytesIO
 from itertools import pairwise
 from pathlib import Path
 
+import numpy as np
 import pytest
-from playwright.sync_api import Browser, Page, expect
+from PIL import Image
+from playwright.sync_api import Browser, Locator, Page, expect
 from study_fixture import write_study
 
+from analysis import write_report
 from analysis.pdf import write_pdf
+from analysis.plan import AnalysisPlan
 from analysis.script import script_source
 from fakesss.cli_analysis import report_folder
 from study_server.app import admin_secret
@@ -117,6 +122,44 @@ def test_no_width_makes_the_page_scroll_sideways(report: Page, width: int) -> No
     report.set_viewport_size({"width": width, "height": 800})
     assert report.evaluate(OVERFLOW) == 0
     assert report.locator(".scroll:not([tabindex='0'])").count() == 0
+
+
+@pytest.fixture(scope="module")
+def standing_out(tmp_path_factory: pytest.TempPathFactory) -> str:
+    """The address of a report whose widest table has as much to say as it can: who stands out, by the survey's ids."""
+    folder = tmp_path_factory.mktemp("standing_out")
+    lines = ["participant,stimulus,question,rating,trial,rt_ms"]
+    for who in range(9):
+        for what in range(30 if who else 12):
+            answer = 1 + (what + who * what) % 3 if who else 7 - what % 3
+            lines.append(f"3a8c15362971e81{who},i{what},shiny,{answer},{what},{150 if who == 0 else 2000}")
+    (folder / "ratings.csv").write_text("\n".join(lines))
+    plan = AnalysisPlan.model_validate({"completers_only": False, "tests": []})
+    write_report(folder / "ratings.csv", folder / "out", plan=plan)
+    return (folder / "out" / "index.html").as_uri()
+
+
+def test_a_cut_table_shows_that_it_goes_on(page: Page, standing_out: str) -> None:
+    """On a screen none is cut; on a phone the edge behind which there is more is shaded, and the end is not."""
+    page.set_viewport_size({"width": 1280, "height": 800})
+    page.goto(standing_out)
+    assert "answers missing" in column(page, "table-quality", 2)[0]
+    cut = "each => each.scrollWidth - each.clientWidth"
+    assert [each.evaluate(cut) for each in page.locator(".table .scroll").all() if each.is_visible()].count(0) > 2
+    assert all(each.evaluate(cut) <= 0 for each in page.locator(".table .scroll").all())
+    page.set_viewport_size({"width": 390, "height": 800})
+    box = page.locator("#table-quality .scroll")
+    assert box.evaluate(cut) > 50
+    assert shade(box, right=True) < 230 and shade(box, right=False) == 255
+    box.evaluate("each => each.scrollTo(9999, 0)")
+    assert shade(box, right=True) == 255 and shade(box, right=False) < 230
+
+
+def shade(box: Locator, *, right: bool) -> int:
+    """The grey of most of the outermost column of pixels but one, 0..255."""
+    with Image.open(BytesIO(box.screenshot())) as shot:
+        grey = np.asarray(shot.convert("L"))
+    return int(np.median(grey[:, -2 if right else 1]))
 
 
 def test_a_page_for_everyone(report: Page) -> None:
