@@ -9,6 +9,7 @@ from analysis.plan import AnalysisPlan
 from analysis.results import Analysed
 from analysis.rows import Row
 from analysis.statistics.multiplicity import Adjusted
+from analysis.wording import counted
 
 NAMES = {"holm": "Holm", "fdr": "Benjamini–Hochberg"}
 
@@ -41,7 +42,9 @@ def family_words(plan: AnalysisPlan, found: Sequence[Analysed]) -> str:
     tested = [undeclared(each.row, plan) for each in found if each.p is not None]
     added = sum(tested) if not all(tested) else 0
     words = together(len(tested) - added) if plan.family == "all" else f"the tests of each {plan.family}"
-    return f"{words}, comparisons that [analysis] does not declare among themselves" if added else words
+    if not added:
+        return words
+    return f"{words}, and apart from them over {counted(added, 'comparison')} that [analysis] does not declare"
 
 
 def together(count: int) -> str:

@@ -260,7 +260,7 @@ def test_comparisons_that_nobody_declared_take_nothing_from_the_planned_tests(tm
         assert [each.p_holm for each in mine if each.p is not None] == pytest.approx(
             list(multipletests(p, method="holm")[1])
         )
-    added = "all 9 tests, comparisons that [analysis] does not declare among themselves"
+    added = "all 9 tests, and apart from them over 3 comparisons that [analysis] does not declare"
     assert family_words(study.plan, evidence.main) == added
     declaring = study.plan.model_copy(update={"comparison": (Comparison.model_validate(COMPARED),)})
     assert family_words(declaring, evidence.main) == "all 12 tests"
