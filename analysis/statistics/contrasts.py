@@ -26,8 +26,9 @@ class PairedContrasts:
     Returns a row per pair: `a, b, difference` (mean of a less mean of b), `ci_low, ci_high` (unadjusted), `t, df, p,
     p_holm, d_z` (mean difference over the standard deviation of differences), `d_z_low, d_z_high` (its interval), `n`.
     A pair whose differences are all equal (but for rounding) has NaN for `t, p, p_holm, d_z` and its limits, and is not
-    counted in the adjustment. Agrees with R `pairwise.t.test(paired = TRUE, p.adjust.method = "holm")`.
-    """
+    counted in the adjustment. Agrees with R `pairwise.t.test(paired = TRUE, p.adjust.method = "holm")`, and with
+    pingouin.pairwise_tests(padjust="holm"), which it is not: that has no intervals, its d is d_av, and it takes a
+    millisecond for each pair, of which 500 pictures have a hundred thousand."""
 
     value: str
     within: str

@@ -46,9 +46,10 @@ def noncentrality(observed: float, df1: float, df2: float, quantile: float) -> f
 def d_z_interval(d_z: Floats, n: int, level: float = 0.95) -> tuple[Floats, Floats]:
     """Interval of a mean difference over the standard deviation of differences, for each of `d_z` of `n` people.
 
-    The noncentralities at which the observed t = d_z sqrt(n) is at the tail quantiles, over sqrt(n): to 7 digits or
-    more. Agrees with R effectsize::cohens_d(paired = TRUE). Cumming & Finch (2001), Educ. Psych. Measurement 61. Beyond
-    |t| = 1000 the limit for large t, noncentrality = t sqrt(chi-squared / df), which is off by 1 in 10,000 at the most.
+    The noncentralities at which the observed t = d_z sqrt(n) is at the tail quantiles, over sqrt(n). Limits are right
+    to 1 in 100,000 where |t| is at most 100 and to 1 in 10,000 beyond: the library's search ends there. From |t| = 1000
+    on the limit for large t, noncentrality = t sqrt(chi-squared / df). Agrees with R effectsize::cohens_d(paired =
+    TRUE). Cumming & Finch (2001), Educ. Psych. Measurement 61.
     """
     t, df = np.asarray(d_z, dtype=np.float64) * np.sqrt(n), n - 1
     tail = (1 - level) / 2

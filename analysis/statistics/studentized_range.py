@@ -11,7 +11,7 @@ from analysis.statistics.undefined import Floats
 
 P_FLOOR = 1e-10  # scipy's studentized range is accurate to about 1e-11 absolutely: smaller p values are bounds
 FEW = 300  # distinct q that scipy is asked for one by one
-NODES = 160
+NODES = 200
 HEAVY_DF, HEAVY_Q = 10, 100.0  # with less than 10 df scipy loses the tail from a q of some hundreds on
 NEGLIGIBLE = 1e-9
 WIDEST = 40.0  # no range of standard normal values is wider: its probability underflows
@@ -21,7 +21,7 @@ def tail_probabilities(q: Floats, k: int, df: float) -> Floats:
     """P(Q > q) of k means and df degrees of freedom for each of `q` >= 0: R's `ptukey(q, k, df, lower.tail = FALSE)`.
 
     Never below 1e-10, which is a bound: smaller values stand for "less than that". Within 1e-9 of scipy's own double
-    integral, which is asked once for each distinct q; of more than 300 distinct ones, 160 values are interpolated. Two
+    integral, which is asked once for each distinct q; of more than 300 distinct ones, 200 values are interpolated. Two
     means: Student's t, exactly. df below 10 and q above 100: `heavy_tail`.
     """
     distinct, place = np.unique(q, return_inverse=True)
@@ -82,7 +82,7 @@ def heavy_tail(q: float, k: int, df: float) -> float:
 
 
 def interpolated(q: Floats, k: int, df: float) -> Floats:
-    """By the Chebyshev polynomial through 160 values of scipy's, up to the first q whose tail is below the floor."""
+    """By the Chebyshev polynomial through 200 values of scipy's, up to the first q whose tail is below the floor."""
     end = 4.0
     while tail(end, k, df) > P_FLOOR:
         end *= 1.25

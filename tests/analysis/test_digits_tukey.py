@@ -117,13 +117,14 @@ def double_integral_far(q: float, k: int, df: int) -> float:
     return float((weights * np.exp(log_density) * x ** (df - 1) / q**df * range_tail(x, k)).sum())
 
 
-@pytest.mark.parametrize(("k", "df"), [(500, 997_501), (30, 60)])
+@pytest.mark.parametrize(("k", "df"), [(500, 997_501), (30, 60), (100, 10)])
 def test_many_q_are_interpolated_within_1e_9(k: int, df: int) -> None:
     """Among more than 300 distinct q, those that are asked for one by one too."""
     q = np.random.default_rng(k).uniform(0, 14, FEW + 50)
+    q[:25] = np.linspace(3, 9, 25)
     some = q[:25]
     exact = np.maximum(stats.studentized_range.sf(some, k, df), P_FLOOR)
-    assert tail_probabilities(q, k, df)[:25] == pytest.approx(exact, abs=1e-9)
+    assert tail_probabilities(q, k, df)[:25] == pytest.approx(exact, abs=1e-10)
 
 
 def test_equal_q_have_equal_p_in_their_places() -> None:

@@ -6,6 +6,7 @@ from typing import Literal
 
 import numpy as np
 import pandas as pd
+import pingouin
 import pytest
 from scipy import stats
 
@@ -140,3 +141,16 @@ def test_contrasts_carry_the_interval_of_d_z() -> None:
     table = PairedContrasts(**COLUMNS)(ROUNDING)
     low, high = d_z_interval(table["d_z"].to_numpy(), 22)
     assert table["d_z_low"].to_numpy() == pytest.approx(low) and table["d_z_high"].to_numpy() == pytest.approx(high)
+
+
+def test_contrasts_are_pingouins() -> None:
+    """t, p and Holm's p of every pair as pingouin.pairwise_tests has them."""
+    random = np.random.default_rng(41)
+    table = random.integers(1, 8, (17, 5)).astype(float)
+    who, names = np.repeat(np.arange(17), 5), np.tile([*"abcde"], 17)
+    frame = pd.DataFrame({"participant": who, "condition": names, "rating": table.ravel()})
+    ours = PairedContrasts("rating", "condition", "participant")(frame)
+    theirs = pingouin.pairwise_tests(frame, dv="rating", within="condition", subject="participant", padjust="holm")
+    assert ours[["a", "b"]].to_numpy().tolist() == theirs[["A", "B"]].to_numpy().tolist()
+    for name, other in (("t", "T"), ("df", "dof"), ("p", "p_unc"), ("p_holm", "p_corr")):
+        assert ours[name].to_numpy(float) == pytest.approx(theirs[other].to_numpy(float), rel=1e-9)

@@ -228,3 +228,19 @@ def test_the_covariance_is_the_generalised_least_squares_one() -> None:
     beta = covariance @ x.T @ np.linalg.solve(v, frame["rating"].to_numpy())
     chi2 = beta[1:] @ np.linalg.solve(covariance[1:, 1:], beta[1:])
     assert fit.tests["chi2"].iloc[0] == pytest.approx(chi2, rel=1e-6)
+
+
+def test_a_small_variance_is_not_none() -> None:
+    """Mean squares that make people's variance .0009 of the residual's exactly: kept, where 0 is left out."""
+    random, n, k = np.random.default_rng(37), 10, 6
+    left = random.normal(size=(n, k))
+    left -= left.mean(axis=0) + left.mean(axis=1, keepdims=True) - left.mean()
+    left /= np.sqrt((left**2).sum() / ((n - 1) * (k - 1)))
+    people, pictures = random.normal(size=n), random.normal(size=k)
+    people -= people.mean()
+    people *= np.sqrt((1 / k + 0.0009) / people.var(ddof=1))
+    pictures -= pictures.mean()
+    pictures *= np.sqrt((1 / n + 1) / pictures.var(ddof=1))
+    frame = crossed(left + people[:, None] + pictures)
+    table = VarianceComponents(**CROSSED)(frame).set_index("term")["variance"]
+    assert table.to_numpy() == pytest.approx([0.0009, 1, 1], rel=1e-3)
