@@ -53,10 +53,11 @@ def summaries(judged: Sequence[Judged]) -> tuple[str, ...]:
     said = []
     for question, margin in dict.fromkeys((one.each.row.question, one.margin) for one in judged):
         mine = [(one, pair) for one in judged if one.each.row.question == question for pair in one.records]
-        said.append(
-            f"{sentence_case(question)}, margin {steps(margin)}: of {counted(len(mine), 'pair')} "
-            f"{'; '.join(verdicts(Counter(str(pair['verdict']) for _, pair in mine)))}.{alike_by_name(mine)}"
-        )
+        found = verdicts(Counter(str(pair["verdict"]) for _, pair in mine))
+        pairs = counted(len(mine), "pair")
+        every = "the only pair" if len(mine) == 1 else f"all {pairs}"
+        told = f"{every} {found[0].split(' ', 1)[1]}" if len(found) == 1 else f"of {pairs} {'; '.join(found)}"
+        said.append(f"{sentence_case(question)}, margin {steps(margin)}: {told}.{alike_by_name(mine)}")
     return tuple(said)
 
 

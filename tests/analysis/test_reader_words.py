@@ -143,7 +143,7 @@ def test_alike_levels_are_named_with_their_factor(gathered: Callable[..., Eviden
     evidence = gathered(rows, AnalysisPlan(tests=(), equivalence=EquivalencePlan(margin=4.0)), levels)
     made = equivalence(evidence)
     assert made is not None
-    assert made.summary == ("Shiny, margin ±4 steps: of 2 pairs 2 alike. Alike: a −35 and 0; b 1 and 2.",)
+    assert made.summary == ("Shiny, margin ±4 steps: all 2 pairs alike. Alike: a −35 and 0; b 1 and 2.",)
 
 
 @pytest.mark.parametrize(
