@@ -103,8 +103,8 @@ def test_the_sentence_on_agreement_names_who_stands_apart(section: Section) -> N
     assert section.summary[0] in section.body
     assert section.sentences[0].startswith(
         "A proportional odds regression (participant-clustered standard errors, 44 participants, 132 ratings) showed a "
-        "significant effect of thickness exponent on ratings of “translucent”, χ²(2) = 36.19, p < .001 (against 25: "
-        "18: OR = 0.42, 95% CI [0.25, 0.71]; 30: OR = 4.31"
+        "significant effect of thickness exponent on ratings of “translucent”, F(2, 42) = 17.68, p < .001 (against 25: "
+        "18: OR = 0.42, 95% CI [0.25, 0.72]; 30: OR = 4.31"
     )
 
 
