@@ -57,6 +57,35 @@ def no_effect_within(answers: Floats) -> dict[str, Floats]:
     }
 
 
+def effect_between(answers: Floats, truth: Floats) -> dict[str, Floats]:
+    """Independent samples of unlike means: do the intervals hold `truth`, the samples' population means?"""
+    n, _, k = answers.shape
+    q = range_of_independent(Moments.of(answers), truth)
+    return {
+        "95% CIs of Tukey, independent samples, all pairs": held(q <= studentized_quantile(LEVEL, k, k * (n - 1)), q)
+    }
+
+
+def effect_within(answers: Floats, truth: Floats) -> dict[str, Floats]:
+    """The same people, pictures of unlike means."""
+    levels = Moments.of(answers)
+    n, _, k = answers.shape
+    q = range_of_repeated(levels, truth)
+    off = levels.mean - truth
+    apart, pair = np.abs(off[:, 0] - off[:, 1]), half_of_pair(levels)
+    halves = halves_within(levels)
+    return {
+        "95% CI of a paired difference": held(apart <= pair, q),
+        "95% CIs of Tukey, repeated measures, all pairs": held(
+            q <= studentized_quantile(LEVEL, k, (k - 1) * (n - 1)), q
+        ),
+        "95% CI of Cousineau and Morey, of the picture's own mean": held(np.abs(off[:, 0]) <= halves[:, 0], q),
+        "95% CI of Cousineau and Morey times √2, of a difference": held(
+            apart <= np.sqrt(2) * halves[:, :2].mean(axis=1), q
+        ),
+    }
+
+
 def crossed(answers: Floats) -> dict[str, Floats]:
     """Six pictures as a 2 x 3 factorial: the interaction."""
     p = repeated_p(Moments.of(answers), np.kron(helmert(2).T, helmert(3).T))
@@ -133,22 +162,40 @@ def smallest_holm_p(levels: Moments) -> Floats:
     return np.where(none.all(axis=1), np.nan, np.minimum((~none).sum(axis=1) * smallest, 1.0))
 
 
-def range_of_repeated(levels: Moments) -> Floats:
-    """The largest q of Tukey's test within people."""
-    return np.asarray(np.ptp(levels.mean, axis=1) / np.sqrt(error_of(levels)[1] / levels.people))
+def range_of_repeated(levels: Moments, truth: Floats | float = 0.0) -> Floats:
+    """The largest q of Tukey's test within people, of means less `truth`: no larger than q(k, df) where all pairs'
+    intervals hold it."""
+    return np.asarray(np.ptp(levels.mean - truth, axis=1) / np.sqrt(error_of(levels)[1] / levels.people))
 
 
-def range_of_independent(pictures: Moments) -> Floats:
-    """The largest q of Tukey's test of independent samples."""
+def range_of_independent(pictures: Moments, truth: Floats | float = 0.0) -> Floats:
+    """The same of independent samples."""
     error = np.diagonal(pictures.covariance, axis1=1, axis2=2).mean(axis=1)
     total = error + pictures.mean.var(axis=1)
     with np.errstate(invalid="ignore", divide="ignore"):
-        q = np.ptp(pictures.mean, axis=1) / np.sqrt(error / pictures.people)
+        q = np.ptp(pictures.mean - truth, axis=1) / np.sqrt(error / pictures.people)
     return np.where(error <= ROUNDING * total, np.nan, q)
+
+
+def half_width(variance: Floats, n: int) -> Floats:
+    """Half of the t interval of a mean of `n` values with that variance."""
+    return np.asarray(stats.t.ppf((1 + LEVEL) / 2, n - 1) * np.sqrt(variance / n))
 
 
 def mean_interval(pictures: Moments) -> tuple[Floats, Floats]:
     """The t interval of the first sample's mean."""
-    n = pictures.people
-    half = stats.t.ppf((1 + LEVEL) / 2, n - 1) * np.sqrt(pictures.covariance[:, 0, 0] / n)
+    half = half_width(pictures.covariance[:, 0, 0], pictures.people)
     return pictures.mean[:, 0] - half, pictures.mean[:, 0] + half
+
+
+def half_of_pair(levels: Moments) -> Floats:
+    """Half of the t interval of the first two pictures' difference."""
+    c = levels.covariance
+    return half_width(c[:, 0, 0] + c[:, 1, 1] - 2 * c[:, 0, 1], levels.people)
+
+
+def halves_within(levels: Moments) -> Floats:
+    """Half of each picture's interval, (studies, pictures), by Cousineau with Morey's correction (2008)."""
+    k = levels.mean.shape[1]
+    centred = levels.combined(np.eye(k) - 1 / k).covariance
+    return half_width(np.diagonal(centred, axis1=1, axis2=2) * k / (k - 1), levels.people)

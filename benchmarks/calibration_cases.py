@@ -16,12 +16,9 @@ from scipy import stats
 
 from analysis.statistics.agreement import IntraclassCorrelation, KrippendorffAlpha
 from analysis.statistics.anova import OneWayAnova, RepeatedMeasuresAnova
-from analysis.statistics.contrasts import PairedContrasts
 from analysis.statistics.cues import CueRegression, CueSlopes
-from analysis.statistics.intervals import MeanIntervals
 from analysis.statistics.mixed import MixedModel
 from analysis.statistics.ordinal import OrdinalRegression
-from analysis.statistics.tukey import TukeyHSD
 from analysis.statistics.undefined import Floats
 from analysis.statistics.wilcoxon import SignedRanks
 from benchmarks.calibration_batches import ALPHA
@@ -80,45 +77,31 @@ def expected(mean: Floats, spread: Floats | float) -> Floats:
     return np.asarray(1 + stats.norm.sf((edges - mean[:, None]) / np.broadcast_to(spread, mean.shape)[:, None]).sum(1))
 
 
-def effect_between(frame: pd.DataFrame, crowd: Crowd) -> dict[str, bool]:
-    """Independent samples of unlike means: do the intervals hold the truth?"""
-    anova = OneWayAnova(**BETWEEN)(frame).iloc[0]
-    found = {"95% CIs of Tukey, independent samples, all pairs": covers_pairs(TukeyHSD(**BETWEEN)(frame), crowd)}
-    if not crowd.steps:
-        effect = float(np.var(crowd.truth))
-        found["90% CI of eta squared"] = covers(anova, effect / (effect + PERSON_SD**2 + NOISE_SD**2))
-    return found
+def effect_size_between(frame: pd.DataFrame, crowd: Crowd) -> dict[str, bool]:
+    """Independent samples of unlike means."""
+    effect = float(np.var(crowd.truth))
+    truth = effect / (effect + PERSON_SD**2 + NOISE_SD**2)
+    return {"90% CI of eta squared": covers(OneWayAnova(**BETWEEN)(frame).iloc[0], truth)}
 
 
-def effect_within(frame: pd.DataFrame, crowd: Crowd) -> dict[str, bool]:
-    """The same people, pictures of unlike means."""
-    means = MeanIntervals("rating", "condition", "participant")(frame)
-    halves = (means["ci_high"] - means["mean"]).to_numpy()
-    gap, truth = means["mean"].iloc[1] - means["mean"].iloc[0], crowd.truth
-    found = {
-        "95% CI of a paired difference": covers(PairedContrasts(**WITHIN)(frame).iloc[0], truth[0] - truth[1]),
-        "95% CIs of Tukey, repeated measures, all pairs": covers_pairs(
-            TukeyHSD("rating", "condition", "participant")(frame), crowd
-        ),
-        "95% CI of Cousineau and Morey, of the picture's own mean": covers(means.iloc[0], truth[0]),
-        "95% CI of Cousineau and Morey times √2, of a difference": abs(gap - (truth[1] - truth[0]))
-        <= np.sqrt(2) * halves[:2].mean(),
+def effect_sizes_within(frame: pd.DataFrame, crowd: Crowd) -> dict[str, bool]:
+    """The same people, pictures of unlike means; the error's mean square is the mean of their noise's variances."""
+    anova = RepeatedMeasuresAnova(**WITHIN)(frame).iloc[0]
+    k, squares = len(crowd.truth), float(((crowd.truth - crowd.truth.mean()) ** 2).sum())
+    noise = float(np.mean(np.square(crowd.noises or NOISE_SD)))
+    partial_eta = squares / (squares + (k - 1) * noise)
+    general = squares / (squares + k * PERSON_SD**2 + k * noise)
+    return {
+        "90% CI of partial eta squared": anova["partial_ci_low"] <= partial_eta <= anova["partial_ci_high"],
+        "90% CI of generalized eta squared": covers(anova, general),
     }
-    if not crowd.steps:
-        anova = RepeatedMeasuresAnova(**WITHIN)(frame).iloc[0]
-        k, squares = len(truth), float(((truth - truth.mean()) ** 2).sum())
-        partial_eta = squares / (squares + (k - 1) * NOISE_SD**2)
-        found["90% CI of partial eta squared"] = anova["partial_ci_low"] <= partial_eta <= anova["partial_ci_high"]
-        general = squares / (squares + k * PERSON_SD**2 + k * NOISE_SD**2)
-        found["90% CI of generalized eta squared"] = covers(anova, general)
-    return found
 
 
 def models(frame: pd.DataFrame) -> dict[str, bool]:
-    """The Wald tests of the two models; every level is one picture, so the mixed model has people's variance alone."""
-    found = {"mixed model, Wald": MixedModel("rating", ("condition",), "participant", None)(frame)}
+    """The tests of the two models; every level is one picture, so the mixed model has people's variance alone."""
+    found = {"mixed model, F with containment df": MixedModel("rating", ("condition",), "participant", None)(frame)}
     if frame["rating"].nunique() <= STEPS:
-        claim = "ordinal regression, Wald, clustered by person"
+        claim = "ordinal regression, clustered by person, Hotelling's F"
         found[claim] = OrdinalRegression("rating", ("condition",), "participant")(frame)
     return {claim: table["p"].iloc[0] < ALPHA for claim, table in found.items()}
 
@@ -136,7 +119,7 @@ def picture_models(frame: pd.DataFrame) -> dict[str, bool]:
     cells = frame.groupby(["participant", "condition"], as_index=False)["rating"].mean()
     mixed = MixedModel("rating", ("condition",), "participant", "picture")(frame)
     return {
-        "mixed model, Wald": mixed["p"].iloc[0] < ALPHA,
+        "mixed model, F with containment df": mixed["p"].iloc[0] < ALPHA,
         "repeated-measures F, Greenhouse-Geisser": RepeatedMeasuresAnova(**WITHIN)(cells)["p_gg"].iloc[0] < ALPHA,
     }
 
@@ -221,9 +204,3 @@ def agreement(frame: pd.DataFrame, gallery: Gallery) -> dict[str, bool]:
 def covers(row: "pd.Series[float]", truth: float) -> bool:
     """Whether `ci_low` to `ci_high` holds the truth."""
     return bool(row["ci_low"] <= truth <= row["ci_high"])
-
-
-def covers_pairs(table: pd.DataFrame, crowd: Crowd) -> bool:
-    """Whether every pair's interval holds the true difference."""
-    truth = dict(zip((f"M{place}" for place in range(1, len(crowd.means) + 1)), crowd.truth, strict=True))
-    return all(covers(row, truth[row["a"]] - truth[row["b"]]) for _, row in table.iterrows())

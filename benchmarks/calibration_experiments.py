@@ -112,11 +112,21 @@ def intervals() -> Iterator[Experiment]:
     """Pictures of unlike means."""
     for name, steps in (("normal", False), ("7 steps", True)):
         crowd = Crowd(f"{name}, unlike means, 3 x 20 people", 20, APART, steps, independent=True)
-        yield Experiment(crowd.name, crowd.frame, partial(cases.effect_between, crowd=crowd), FEW)
+        yield batch(crowd, partial(batches.effect_between, truth=crowd.truth))
+        if not steps:
+            yield sizes(crowd, partial(cases.effect_size_between, crowd=crowd))
         crowd = Crowd(f"{name}, unlike means, 20 people x 3", 20, APART, steps)
-        yield Experiment(crowd.name, crowd.frame, partial(cases.effect_within, crowd=crowd), FEW)
+        yield batch(crowd, partial(batches.effect_within, truth=crowd.truth))
+        if not steps:
+            yield sizes(crowd, partial(cases.effect_sizes_within, crowd=crowd))
     crowd = Crowd("normal, unlike means, sphericity broken, 20 people x 4", 20, (*APART, 4.0), noises=UNEQUAL)
-    yield Experiment(crowd.name, crowd.frame, partial(cases.effect_within, crowd=crowd), FEW)
+    yield batch(crowd, partial(batches.effect_within, truth=crowd.truth))
+    yield sizes(crowd, partial(cases.effect_sizes_within, crowd=crowd))
+
+
+def sizes(crowd: Crowd, judge: Callable[[Any], Says]) -> Experiment:
+    """Intervals of effect sizes, which take the public objects."""
+    return Experiment(f"effect sizes: {crowd.name}", crowd.frame, judge, 2 * FEW)
 
 
 def raters() -> Iterator[Experiment]:

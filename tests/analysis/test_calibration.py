@@ -28,7 +28,9 @@ SMALL = {
     "crossed: 7 steps, 20 people x 6": 2000,
     "7 steps, 20 people x 9 random pictures, three cues": 30,
     "normal, 20 people x 15 random pictures": 30,
-    "normal, unlike means, 3 x 20 people": 20,
+    "normal, unlike means, 3 x 20 people": 2000,
+    "effect sizes: normal, unlike means, 3 x 20 people": 20,
+    "effect sizes: normal, unlike means, sphericity broken, 20 people x 4": 20,
 }
 OFF = {  # known not to keep their level on these ratings: docs/calibration.md says so
     ("repeated-measures F, uncorrected", "normal, sphericity broken, 20 people x 4"),
