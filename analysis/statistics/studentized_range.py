@@ -20,7 +20,7 @@ WIDEST = 40.0  # no range of standard normal values is wider: its probability un
 def tail_probabilities(q: Floats, k: int, df: float) -> Floats:
     """P(Q > q) of k means and df degrees of freedom for each of `q` >= 0: R's `ptukey(q, k, df, lower.tail = FALSE)`.
 
-    Never below 1e-10, which is a bound: smaller values stand for "less than that". Within 1e-9 of scipy's own double
+    Never below 1e-10, which is a bound: smaller values stand for "less than that". Within 1e-10 of scipy's own double
     integral, which is asked once for each distinct q; of more than 300 distinct ones, 200 values are interpolated. Two
     means: Student's t, exactly. df below 10 and q above 100: `heavy_tail`.
     """

@@ -6,7 +6,7 @@ from pathlib import Path
 import numpy as np
 import pandas as pd
 import pytest
-from hard_ratings import HEAD, ratings
+from hard_ratings import HEAD, ratings, scattered
 
 from analysis import RepeatedMeasuresAnova, write_report
 from analysis.plan import AnalysisPlan
@@ -99,10 +99,19 @@ def test_samples_that_scatter_differently(csv_of: Write, tmp_path: Path) -> None
     assert "mauchly_w" not in box
 
 
-@pytest.mark.parametrize(("people", "pictures"), [(3, "abcd"), (4, "abcde"), (9, "ab")])
+@pytest.mark.parametrize(("people", "pictures"), [(3, "abcd"), (4, "abcde"), (9, "ab"), (2, "ab")])
 def test_sphericity_that_cannot_be_judged(csv_of: Write, tmp_path: Path, people: int, pictures: str) -> None:
     """No p of 1 where the libraries print one: a dash and the reason."""
     results = write_report(csv_of(ratings(people=people, pictures=tuple(pictures))), tmp_path / "out")
     box = results["assumptions"][0]
     why = "two levels have but one difference" if len(pictures) == 2 else "sphericity cannot be judged"
     assert box["mauchly_p"] is None and why in box["reason"]
+    warned = any("sphericity cannot be judged" in said for said in results["warnings"])
+    assert warned is (len(pictures) > 2)  # two levels: it holds
+
+
+def test_a_difference_that_nobody_varies_in_has_no_mauchly(csv_of: Write, tmp_path: Path) -> None:
+    """Two of four pictures at 7 by all twelve people: the reason, not W = 0."""
+    text = ratings(lambda who, what: 7 if what < 2 else scattered(who, what), 12, ("a", "b", "c", "d"))
+    box = write_report(csv_of(text), tmp_path / "out")["assumptions"][0]
+    assert box["mauchly_w"] is None and "the same in everyone, so Mauchly’s test has no value" in box["reason"]
