@@ -30,7 +30,7 @@ class Residuals:
         left = self.left(frame)
         if left.size < 3 or spreadless(left, frame[self.value].dropna().to_numpy(np.float64)):
             raise Undefined(f"{self.value} by {self.group}: no residual is left whose shape could be described")
-        w, p = stats.shapiro(left) if left.size <= LARGEST else (np.nan, np.nan)
+        w, p = stats.shapiro(left / np.ptp(left)) if left.size <= LARGEST else (np.nan, np.nan)
         row = {"skewness": float(stats.skew(left)), "kurtosis": float(stats.kurtosis(left))}
         return pd.DataFrame([{**row, "shapiro_w": float(w), "shapiro_p": not_zero(p), "n": left.size}])
 

@@ -10,7 +10,7 @@ from hard_ratings import ratings, scattered
 
 from analysis import write_report
 from analysis.plan import AnalysisPlan, check_analysis
-from fakesss.cli import commands
+from fakesss.cli_analysis import report
 from fakesss.problem import BadInput
 
 Write = Callable[[str], Path]
@@ -19,7 +19,7 @@ WIDE = "participant,img1,img2\np1,3,4\np2,4,5\np3,2,6\n"
 
 def told(*words: str | Path) -> str:
     """What `fakesss report` says where it writes nothing."""
-    result = CliRunner().invoke(commands, ["report", *map(str, words)])
+    result = CliRunner().invoke(report, [*map(str, words)])
     assert isinstance(result.exception, BadInput)
     return str(result.exception)
 
