@@ -11,6 +11,7 @@ from hard_ratings import ratings, scattered
 from analysis import write_report
 from analysis.plan import AnalysisPlan, check_analysis
 from fakesss.cli_analysis import report
+from fakesss.cli_study import build_study, new
 from fakesss.problem import BadInput
 
 Write = Callable[[str], Path]
@@ -146,3 +147,14 @@ def test_slips_are_found_before_the_first_picture_is_drawn(analysis: dict[str, A
     with pytest.raises(BadInput) as error:
         check_analysis(study(**analysis), "study.toml", ["img01", "img02"])
     assert sentence in str(error.value)
+
+
+def test_build_draws_nothing_for_a_picture_that_is_not_there(tmp_path: Path) -> None:
+    """`fakesss build` knows the pictures before they are drawn."""
+    study = tmp_path / "study"
+    assert CliRunner().invoke(new, [str(study)]).exit_code == 0
+    with (study / "study.toml").open("a") as file:
+        file.write('\n[[analysis.comparison]]\nname = "x"\nquestion = "translucent"\nstimuli = ["best", "img99"]\n')
+    with pytest.raises(BadInput, match='the study has no picture "img99"'):
+        build_study(study)
+    assert not (study / "stimuli").exists()
