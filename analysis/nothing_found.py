@@ -11,16 +11,20 @@ from analysis.study import Question
 from analysis.wording import apa_p, joined, percent, sentence_case, signed
 
 
-def nothing_said(rest: Sequence[Analysed], question: Question, plan: AnalysisPlan) -> str:
+def nothing_said(rest: Sequence[Analysed], matter: Sequence[Analysed], question: Question, plan: AnalysisPlan) -> str:
     """Absence of a finding in `rest`, the rows without one, with the differences that the intervals still allow. A row
-    whose p was below alpha before it was adjusted, or one of whose intervals excludes 0, is a hint and said to be."""
+    whose p was below alpha before it was adjusted, or one of whose intervals excludes 0, is a hint and said to be.
+
+    `matter`: the rows with a finding: a factor of an interaction among them has no effect on average at the most.
+    """
+    entangled = {name for each in matter if each.row.kind == "interaction" for name in each.row.factors}
     hints = [(each, why) for each in rest if (why := hint(each, plan))]
     near = [each for each, _ in hints]
     said = [f"{sentence_case(subject(each))}: {why}. A hint, not a finding." for each, why in hints]
-    return " ".join([*none_found([each for each in rest if each not in near], question, plan), *said])
+    return " ".join([*none_found([each for each in rest if each not in near], entangled, question, plan), *said])
 
 
-def none_found(rest: Sequence[Analysed], question: Question, plan: AnalysisPlan) -> list[str]:
+def none_found(rest: Sequence[Analysed], entangled: set[str], question: Question, plan: AnalysisPlan) -> list[str]:
     """Rows without any sign of an effect: the pairs of factors and pictures bound it, interactions have none."""
     bent = [each.row.name for each in rest if each.row.kind == "interaction"]
     whole = [each for each in rest if each.row.kind != "interaction"]
@@ -28,15 +32,19 @@ def none_found(rest: Sequence[Analysed], question: Question, plan: AnalysisPlan)
     if not whole:
         return [f"{none}. That is not evidence of none."] if bent else []
     evidence = f"That is not evidence of none{allowed(whole, question, plan)}."
-    said = [f"No {' and no '.join(names_of(whole))} was found. {evidence}"]
+    said = [f"No {' and no '.join(names_of(whole, entangled))} was found. {evidence}"]
     return [*said, f"{none} either; no interval bounds it."] if bent else said
 
 
-def names_of(rest: Sequence[Analysed]) -> list[str]:
-    """effect of A and B; difference in “others vs ours”; difference between pictures."""
-    factors = [each.row.name for each in rest if each.row.kind == "factor"]
+def names_of(rest: Sequence[Analysed], entangled: set[str]) -> list[str]:
+    """effect of A and B; average effect of C, which interacts; difference in “others vs ours”; difference between
+    pictures."""
+    named = [each.row.name for each in rest if each.row.kind == "factor"]
+    factors = [name for name in named if name not in entangled]
+    average = [name for name in named if name in entangled]
     compared = [f"“{each.row.compared}”" for each in rest if each.row.kind == "comparison"]
     names = [f"effect of {joined(factors)}"] if factors else []
+    names += [f"average effect of {joined(average)} beside the interaction"] if average else []
     names += [f"difference in {joined(compared)}"] if compared else []
     return names + ["difference between pictures" for each in rest if each.row.kind == "all"]
 

@@ -44,7 +44,7 @@ def findings(study: StudyInfo, found: Sequence[Analysed], plan: AnalysisPlan) ->
         rest = [each for each in mine if not significant(each, plan)]
         if mine:
             effects = tuple(Effect(words(each, mine, question, plan), apa_statistic(each, plan)) for each in matter)
-            nothing = nothing_said(rest, question, plan)
+            nothing = nothing_said(rest, matter, question, plan)
             result.append(Finding(question, effects, nothing))
     return result
 

@@ -96,12 +96,22 @@ def test_no_interval_of_main_effects_bounds_an_interaction(gathered: Callable[..
     """Its sentence stands by itself."""
     rows, levels = factorial()
     evidence = gathered(rows, None, levels)
-    said = nothing_said([e for e in evidence.main if e.p is not None], evidence.study.questions[0], evidence.plan)
+    said = nothing_said([e for e in evidence.main if e.p is not None], (), evidence.study.questions[0], evidence.plan)
     assert said.startswith("No effect of a and b was found. That is not evidence of none: differences of up to ")
     assert said.endswith(" intervals. No interaction a × b was found either; no interval bounds it.")
     alone = [each for each in evidence.main if each.row.kind == "interaction"]
-    only = nothing_said(alone, evidence.study.questions[0], evidence.plan)
+    only = nothing_said(alone, (), evidence.study.questions[0], evidence.plan)
     assert only == "No interaction a × b was found. That is not evidence of none."
+
+
+def test_factors_that_cross_are_without_effect_on_average_only(gathered: Callable[..., Evidence]) -> None:
+    """Each reverses the other: the interaction stands above, and "no effect" would contradict it."""
+    rows, levels = factorial()
+    up = {name: 4 + 2 * ((cell["a"] == 0) == (cell["b"] == 2)) for name, cell in levels.items()}
+    crossed = [(who, name, question, up[name] + noise % 2) for who, name, question, noise in rows]
+    (finding,) = findings(*(lambda e: (e.study, e.main, e.plan))(gathered(crossed, None, levels)))
+    assert finding.effects[0].words.startswith("The effect of ")
+    assert finding.nothing.startswith("No average effect of a and b beside the interaction was found.")
 
 
 def test_no_difference_is_larger_than_the_scale(gathered: Callable[..., Evidence]) -> None:
