@@ -72,7 +72,9 @@ def ratings_with_cues(evidence: Evidence, question: str) -> tuple[pd.DataFrame, 
     asked = evidence.sample.ratings
     mine = asked[(asked["question"] == question) & asked["stimulus"].isin(list(first))]
     picture = mine["stimulus"].astype(object).map(first).rename("picture")
-    rating = mine.groupby([mine["participant"].astype(object), picture])["rating"].mean().reset_index()
+    rating = mine[["participant", "rating"]].assign(picture=picture)
+    if len(set(first.values())) < len(first):
+        rating = rating.groupby(["participant", "picture"])["rating"].mean().reset_index()
     cues = pd.DataFrame([{"picture": p.id, **dict(p.cues)} for p in own], dtype=object)
     names = tuple(str(name) for name in cues.columns if name != "picture")
     return rating.merge(cues.astype(dict.fromkeys(names, float)), on="picture"), names
@@ -172,9 +174,12 @@ def explained_means(
     """R squared of the means of the pictures that the factors made: by the factors, by each cue, by all cues; and why
     there is none by others."""
     levels, said = factor_columns(study)
-    known = frame.merge(levels, on="picture") if len(levels) else frame
+    means = frame.assign(rating=frame["rating"] - frame["rating"].iloc[0]).groupby("picture")["rating"].mean()
+    one_each = frame.drop_duplicates("picture").assign(participant="mean of all")
+    known = one_each.assign(rating=one_each["picture"].map(means))
+    known = known.merge(levels, on="picture") if len(levels) else known
     factors = [str(name) for name in levels.columns if name != "picture"]
-    varied = [name for name in factors if not is_flat(known.drop_duplicates("picture")[name].to_numpy(dtype=float))]
+    varied = [name for name in factors if not is_flat(known[name].to_numpy(dtype=float))]
     if factors and not varied:
         said.append("the pictures that were rated do not differ in the factors, so these explain nothing")
     sets = {BY_FACTORS: varied, **{cue_name(cue): [cue] for cue in used}, BY_CUES: together}

@@ -29,9 +29,11 @@ import pingouin
 from PIL import Image
 from scipy import stats
 from scipy.special import nctdtrinc
+from statsmodels.regression.linear_model import OLS
 
 from analysis import write_report
 from analysis.columns import OPTIONAL, REQUIRED
+from analysis.cue_findings import NAMES as CUE_NAMES
 from analysis.statistics.proportional_odds import CountedOrderedModel
 from study_server.columns import RATINGS
 
@@ -39,6 +41,7 @@ FACTORS = {"thickness exponent": 5, "backlight": 10, "diffuse weight": 10}
 SCALE = 7
 SIDE = 64  # pixels of the stand-in pictures
 STUDIES = ("factorial", "pictures")
+CUES = tuple(CUE_NAMES)
 SHA = "0123456789abcdef" * 4
 Floats = npt.NDArray[np.float64]
 
@@ -109,7 +112,8 @@ def write_study(path: Path) -> None:
         named = dict(zip(FACTORS, levels, strict=True))
         label = ", ".join(f"{name} {level}" for name, level in named.items())
         entry = {"id": identity, "file": f"{identity}.png", "factors": named, "rows": list(FACTORS)}
-        stimuli.append({**entry, "same_picture_as": None, "role": "factor", "label": label})
+        cues = {name: round(float(random.normal()), 6) for name in CUES}
+        stimuli.append({**entry, "same_picture_as": None, "role": "factor", "label": label, "cues": cues})
     study = {
         "title": "A million ratings",
         "seed": 1,
@@ -144,7 +148,16 @@ def calls_of_factorial(wide: Floats) -> dict[str, float]:
         for name, value in calls_of(shaped.mean(axis=others)).items():
             seconds[name] = seconds.get(name, 0.0) + value
     seconds |= timed(simple_effects=lambda: simple_effects(shaped))
-    return seconds | calls_of_agreement(wide) | calls_of_models(wide)
+    return seconds | calls_of_agreement(wide) | calls_of_models(wide) | calls_of_cues(wide)
+
+
+def calls_of_cues(wide: Floats) -> dict[str, float]:
+    """Least squares of all ratings on the cues, with errors clustered by person."""
+    cues = np.random.default_rng(7).normal(size=(wide.shape[1], len(CUES)))
+    design = np.column_stack([np.ones(wide.size), np.tile(cues, (len(wide), 1))])
+    fit = OLS(wide.ravel(), design)
+    people = np.repeat(np.arange(len(wide)), wide.shape[1])
+    return timed(cues=lambda: fit.fit(cov_type="cluster", cov_kwds={"groups": people}, use_t=True))
 
 
 def simple_effects(shaped: Floats) -> None:
