@@ -16,6 +16,7 @@ import sys
 import time
 import warnings
 from collections.abc import Callable
+from functools import cache
 from itertools import combinations, product
 from pathlib import Path
 from typing import Any
@@ -202,9 +203,16 @@ def calls_of(wide: Floats) -> dict[str, float]:
         f_oneway=lambda: stats.f_oneway(*wide.T),
         friedman=lambda: stats.friedmanchisquare(*wide.T),
         tukey=lambda: [stats.studentized_range.sf(each, k, degrees) for degrees in (df, k * (n - 1)) for each in q],
+        hsd=lambda: [quantile(level, k, degrees) for degrees in (df, k * (n - 1)) for level in (0.95, 0.99)],
         t_tests=lambda: [stats.ttest_rel(wide[:, [a]], wide[:, a + 1 :]).confidence_interval() for a in range(k - 1)],
         d_z=lambda: [nctdtrinc(n - 1, tail, np.clip(t, -1000, 1000)) for tail in (0.025, 0.975)],
     )
+
+
+@cache
+def quantile(level: float, k: int, df: float) -> float:
+    """Of the studentized range, once for rows of one size."""
+    return float(stats.studentized_range.ppf(level, k, df))
 
 
 def calls_of_agreement(wide: Floats, resamples: int = 1000) -> dict[str, float]:
