@@ -6,7 +6,7 @@ from typing import Any
 import pandas as pd
 
 from analysis.tables import Table
-from analysis.wording import no_zero
+from analysis.wording import no_zero, share_interval
 
 Entry = Mapping[Hashable, Any]
 
@@ -44,8 +44,7 @@ def with_interval(entry: Entry, name: str) -> str:
         return "–"
     if pd.isna(entry[f"{name}_low"]):
         return f"{no_zero(entry[name], 3)} (no interval)"
-    value, low, high = (no_zero(entry[key], 3) for key in (name, f"{name}_low", f"{name}_high"))
-    return f"{value} [{low}, {high}]"
+    return f"{no_zero(entry[name], 3)} {share_interval(entry[f'{name}_low'], entry[f'{name}_high'])}"
 
 
 def table_of_retests(retests: pd.DataFrame) -> Table | None:

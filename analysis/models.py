@@ -59,6 +59,7 @@ def modelled(found: tuple[Analysed, ...], evidence: Evidence) -> Modelled:
     by_design: list[str] = []
 
     def attempt(kind: str, fit: Callable[[pd.DataFrame], Any]) -> Any:
+        """The fit, or None and in `missing` the reason why there is none."""
         try:
             return fit(frame)
         except Undefined as reason:

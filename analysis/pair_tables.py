@@ -1,35 +1,48 @@
 """Tables of what stands behind an overall test: pairs, declared contrasts, simple effects."""
 
-from collections.abc import Iterable
+from collections.abc import Hashable, Iterable, Iterator
+from typing import Any
 
 import pandas as pd
 
 from analysis.plan import AnalysisPlan
 from analysis.results import Analysed
 from analysis.tables import SHOWN_LEVELS, Table, sizes_text, told_once
-from analysis.wording import apa_df, no_zero, percent, sentence_case, signed, thesis_p, true_minus
+from analysis.wording import (
+    apa_df,
+    interval,
+    no_zero,
+    percent,
+    sentence_case,
+    share_interval,
+    signed,
+    thesis_p,
+    true_minus,
+)
 
 SHOWN_EFFECTS = 24  # simple effects of an interaction; more stand in tables/simple_effects.csv
 CHOSEN = {"all": "all pairs", "reference": "each level with the first", "neighbours": "levels that follow each other"}
 
 
-def interval(low: float, high: float) -> str:
-    """[−0.41, 0.32]."""
-    return f"[{signed(low)}, {signed(high)}]"
+def pairs_shown(each: Analysed, pairs: pd.DataFrame | None) -> Iterator[tuple[tuple[str, ...], dict[Hashable, Any]]]:
+    """Title (once a row), names, difference and interval of each pair, and its record; none of more samples than a page
+    can hold."""
+    if pairs is None or len(each.row.levels) > SHOWN_LEVELS:
+        return
+    labels = each.row.labels
+    for place, pair in enumerate(pairs.to_dict("records")):
+        name = f"{labels[pair['a']]} minus {labels[pair['b']]}"
+        bounds = interval(pair["ci_low"], pair["ci_high"])
+        yield ("" if place else each.row.title, name, signed(pair["difference"]), bounds), pair
 
 
 def table_of_pairs(found: Iterable[Analysed], confidence: float) -> Table | None:
     """Every pair of every row with Tukey's simultaneous intervals; None where no row has few enough samples."""
-    rows = []
-    for each in found:
-        if each.tukey is None or len(each.row.levels) > SHOWN_LEVELS:
-            continue
-        labels = each.row.labels
-        for place, pair in enumerate(each.tukey.to_dict("records")):
-            name = f"{labels[pair['a']]} minus {labels[pair['b']]}"
-            numbers = (signed(pair["difference"]), interval(pair["ci_low"], pair["ci_high"]), f"{pair['q']:.2f}")
-            facts = (f"{pair['df']:.0f}", sizes_text(each.n))
-            rows.append(("" if place else each.row.title, name, *numbers, *facts, thesis_p(pair["p"])))
+    rows = [
+        (*cells, f"{pair['q']:.2f}", f"{pair['df']:.0f}", sizes_text(each.n), thesis_p(pair["p"]))
+        for each in found
+        for cells, pair in pairs_shown(each, each.tukey)
+    ]
     head = ("Configuration", "Pair", "Difference", f"{percent(confidence)} CI", "q", "df", "n", "p Tukey")
     note = "Intervals and p hold together for all pairs of a row."
     table = Table("table-pairs", "All pairs, Tukey", head, tuple(rows), text_columns=2, note=note)
@@ -38,15 +51,7 @@ def table_of_pairs(found: Iterable[Analysed], confidence: float) -> Table | None
 
 def table_of_contrasts(found: Iterable[Analysed], plan: AnalysisPlan) -> Table | None:
     """Paired t tests of the declared pairs with Holm's adjustment; None where nobody rated two samples."""
-    rows = []
-    for each in found:
-        if each.contrasts is None or len(each.row.levels) > SHOWN_LEVELS:
-            continue
-        labels = each.row.labels
-        for place, pair in enumerate(each.contrasts.to_dict("records")):
-            name = f"{labels[pair['a']]} minus {labels[pair['b']]}"
-            numbers = (signed(pair["difference"]), interval(pair["ci_low"], pair["ci_high"]))
-            rows.append(("" if place else each.row.title, name, *numbers, *t_test_cells(pair)))
+    rows = [(*cells, *t_test_cells(pair)) for each in found for cells, pair in pairs_shown(each, each.contrasts)]
     head = ("Configuration", "Pair", "Difference", f"{percent(plan.confidence)} CI", "t", "df", "p Holm", "d_z")
     note = (
         "p Holm: adjusted within each row. The interval is that of the pair alone. d_z: mean difference over the "
@@ -56,7 +61,7 @@ def table_of_contrasts(found: Iterable[Analysed], plan: AnalysisPlan) -> Table |
     return Table("table-contrasts", caption, head, tuple(rows), text_columns=2, note=note) if rows else None
 
 
-def t_test_cells(pair: "dict[object, float] | pd.Series[float]") -> tuple[str, ...]:
+def t_test_cells(pair: "dict[Hashable, Any] | pd.Series[float]") -> tuple[str, ...]:
     """t, df, p Holm, d_z; dashes where the differences have no spread."""
     if pd.isna(pair["p_holm"]):
         return ("–", f"{pair['df']:.0f}", "–", "–")
@@ -88,15 +93,13 @@ def simple_cells(part: "dict[object, float]") -> tuple[str, ...]:
     if pd.isna(part["F"]):
         return ("–",) * 6
     df1, df2 = (apa_df(part[name] * part["epsilon_gg"]) for name in ("df1", "df2"))
-    low, high = no_zero(part["partial_ci_low"], 3), no_zero(part["partial_ci_high"], 3)
-    size = no_zero(part["partial_eta_squared"], 3)
     return (
         f"{part['F']:.2f}",
         f"{df1}, {df2}",
         thesis_p(part["p_gg"]),
         thesis_p(part["p_holm"]),
-        size,
-        f"[{low}, {high}]",
+        no_zero(part["partial_eta_squared"], 3),
+        share_interval(part["partial_ci_low"], part["partial_ci_high"]),
     )
 
 

@@ -10,7 +10,7 @@ from analysis.sample import Sample
 from analysis.statistics import planned
 from analysis.statistics.multiplicity import Adjusted
 from analysis.statistics.undefined import Undefined
-from analysis.wording import apa_df, apa_p, joined, percent, signed
+from analysis.wording import apa_df, apa_p, interval, joined, percent, signed
 from fakesss.problem import nearest
 
 T_TEST = ("estimate", "ci_low", "ci_high", "t", "df", "p", "p_holm", "d_z", "d_av", "n", "dropped")
@@ -67,9 +67,9 @@ def planned_sentences(table: pd.DataFrame, plan: AnalysisPlan) -> Iterator[str]:
         holm = "" if plan.adjust == "none" else " (Holm-adjusted)"
         yield (
             f"The planned contrast “{row['contrast']}” ({row['weights']}) on ratings of “{row['question']}” {verdict}, "
-            f"M = {signed(row['estimate'])}, {percent(plan.confidence)} CI [{signed(row['ci_low'])}, "
-            f"{signed(row['ci_high'])}], t({apa_df(row['df'])}) = {signed(row['t'])}, {apa_p(p)}{holm}, "
-            f"d_z = {signed(row['d_z'])}."
+            f"M = {signed(row['estimate'])}, {percent(plan.confidence)} CI "
+            f"{interval(row['ci_low'], row['ci_high'])}, t({apa_df(row['df'])}) = {signed(row['t'])}, "
+            f"{apa_p(p)}{holm}, d_z = {signed(row['d_z'])}."
         )
 
 

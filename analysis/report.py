@@ -1,6 +1,5 @@
 """The report: one page to read, tables and figures to reuse, numbers for machines."""
 
-import sys
 from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
@@ -70,7 +69,7 @@ def write_report(
     slips = [*margins_not_asked(plan, [q.name for q in study.questions]), *decimals_lost(study, sample.ratings)]
     notes = [*slips, *evidence.notes, *(sentence for section in sections for sentence in section.warnings)]
     said = [*remarks(study, plan, sample, frame, evidence.main, notes), *letters_missing(drawings)]
-    tables = {name: without_zero_p(table) for section in sections for name, table in section.tables.items()}
+    tables = {name: table for section in sections for name, table in section.tables.items()}
     origin = provenance(ratings, frame, study, command or f"write_report({ratings.name})")
     results = results_json(study, plan, sample, tables, said, origin)
     save(out, render_page(evidence, sections, said, origin), results, tables, drawings)
@@ -112,12 +111,6 @@ def decimals_lost(study: StudyInfo, ratings: pd.DataFrame) -> list[str]:
                 "decimals; multiply them by a power of ten, or read the numbers in the tables' files."
             )
     return said
-
-
-def without_zero_p(table: pd.DataFrame) -> pd.DataFrame:
-    """No p is 0: what float64 cannot hold becomes the smallest number that it holds at full precision, a bound."""
-    names = [name for name in table.columns if name == "p" or str(name).startswith("p_") or str(name).endswith("_p")]
-    return table.assign(**{name: table[name].where(table[name] != 0, sys.float_info.min) for name in names})
 
 
 def refuse_contradictions(has_study: bool, wide: str | None, factors: Mapping[str, str] | None) -> None:

@@ -11,7 +11,7 @@ from analysis.nothing_found import nothing_said
 from analysis.plan import AnalysisPlan
 from analysis.results import Analysed
 from analysis.study import Question, StudyInfo
-from analysis.wording import apa_df, apa_p, joined, no_zero, percent, sentence_case, signed
+from analysis.wording import apa_df, apa_p, joined, no_zero, percent, sentence_case, share_interval, signed
 
 ORDER = ("factor", "interaction", "comparison", "all")
 LISTED = 12  # the means of more samples stand in tables/means.csv
@@ -132,7 +132,7 @@ def apa_statistic(each: Analysed, plan: AnalysisPlan) -> str:
     _, size, low, high = each.effect
     return (
         f"F({apa_df(df1)}, {apa_df(df2)}) = {each.anova['F']:.2f}, {apa_p(each.p)}{adjusted}, "
-        f"{symbol} = {no_zero(size, 3)}, 90% CI [{no_zero(low, 3)}, {no_zero(high, 3)}]"
+        f"{symbol} = {no_zero(size, 3)}, 90% CI {share_interval(low, high)}"
     )
 
 

@@ -6,7 +6,17 @@ from dataclasses import dataclass, replace
 from analysis.families import family_words
 from analysis.plan import AnalysisPlan
 from analysis.results import METHODS, Analysed
-from analysis.wording import apa_df, exact_p, joined, no_zero, percent, thesis_hsd, thesis_p, thesis_verdict
+from analysis.wording import (
+    apa_df,
+    exact_p,
+    joined,
+    no_zero,
+    percent,
+    share_interval,
+    thesis_hsd,
+    thesis_p,
+    thesis_verdict,
+)
 
 SHORT = {"holm": "Holm", "fdr": "BH"}
 SHOWN_LEVELS = 8  # more samples make more pairs than a page should hold: those stand in tables/tukey.csv
@@ -138,7 +148,7 @@ def test_cells(each: Analysed) -> tuple[str, ...]:
     repeated = each.mode == "repeated"
     shrink = [no_zero(each.anova[name], 3) for name in ("epsilon_gg", "epsilon_hf")] if repeated else []
     epsilons = (", ".join(shrink),) if repeated else ()
-    tail = (thesis_p(each.p), *adjusted, f"{no_zero(size, 3)} [{no_zero(low, 3)}, {no_zero(high, 3)}]")
+    tail = (thesis_p(each.p), *adjusted, f"{no_zero(size, 3)} {share_interval(low, high)}")
     return (each.row.title, f"{each.anova['F']:.2f}", f"{df1}, {df2}", sizes_text(each.n), *tail, *epsilons)
 
 

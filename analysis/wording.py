@@ -73,6 +73,16 @@ def true_minus(text: str) -> str:
     return re.sub(r"(?<![\w.])-(?=\.?\d)", "−", text)
 
 
+def interval(low: float, high: float) -> str:
+    """[−0.41, 0.32]."""
+    return f"[{signed(low)}, {signed(high)}]"
+
+
+def share_interval(low: float, high: float) -> str:
+    """[.132, .326]: of what cannot exceed 1."""
+    return f"[{no_zero(low, 3)}, {no_zero(high, 3)}]"
+
+
 def sentence_case(text: str) -> str:
     """The first letter capital, the others as they are."""
     return text[:1].upper() + text[1:]

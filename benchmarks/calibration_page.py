@@ -83,6 +83,7 @@ def updated(text: str, counts: Sequence[Count]) -> tuple[str, list[str]]:
     unfit: list[str] = []
 
     def rate(match: re.Match[str]) -> str:
+        """The marked rate as the table has it now."""
         mark = match[2]
         if mark not in listed:
             unfit.append(f"mark {mark}: stands in the words and not in the list")

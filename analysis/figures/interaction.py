@@ -12,7 +12,8 @@ from matplotlib.figure import Figure
 from matplotlib.layout_engine import ConstrainedLayoutEngine
 from matplotlib.offsetbox import AnnotationBbox, OffsetImage
 
-from analysis.figures.means import ACROSS, answer_scale, interval_name, label_scale
+from analysis.figures.grid import ACROSS, label_scale
+from analysis.figures.means import answer_scale, interval_name
 from analysis.figures.style import COLOURS, STYLE, THUMBNAIL, Drawing, drawn, thumbnail
 from analysis.results import Analysed
 from analysis.rows import Level

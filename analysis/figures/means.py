@@ -9,14 +9,13 @@ from matplotlib.figure import Figure
 from matplotlib.layout_engine import ConstrainedLayoutEngine
 from matplotlib.offsetbox import AnnotationBbox
 
+from analysis.figures.grid import factor_grid, in_parts, label_scale
 from analysis.figures.style import COLOURS, STYLE, Drawing, drawn, folded, place_thumbnail
 from analysis.results import Analysed
 from analysis.sentences import ordered_means
 from analysis.study import Question, StudyInfo
 from analysis.wording import percent, sentence_case
 
-ACROSS = 3
-"""Questions beside each other in a figure: more would be too small on a page."""
 SIDE_BY_SIDE, PICTURED = 12, 8
 """Pictures compared in a panel, levels of a factor with thumbnails: more would overlap."""
 
@@ -33,37 +32,21 @@ def interval_name(mode: str, confidence: float) -> str:
 def factor_figures(study: StudyInfo, found: Sequence[Analysed], confidence: float) -> list[Drawing]:
     """Figure 4.5: a factor per row, a question per column; of more than three questions a figure for every three."""
     mine = [each for each in found if each.row.kind == "factor" and each.means is not None]
-    questions = list(dict.fromkeys(each.row.question for each in mine))
-    parts = [questions[i : i + ACROSS] for i in range(0, len(questions), ACROSS)]
-    return [
-        factor_figure(study, [each for each in mine if each.row.question in part], confidence, f"-{i}" if i > 1 else "")
-        for i, part in enumerate(parts, 1)
-    ]
+    return [factor_figure(study, part, confidence, suffix) for part, suffix in in_parts(mine)]
 
 
 def factor_figure(study: StudyInfo, mine: Sequence[Analysed], confidence: float, suffix: str) -> Drawing:
     """Figure 4.5 of up to three questions."""
-    factors = list(dict.fromkeys(each.row.name for each in mine))
-    questions = list(dict.fromkeys(each.row.question for each in mine))
+
+    def draw(axes: Axes, each: Analysed, row: int) -> None:
+        """One panel, in its factor's colour."""
+        draw_means(axes, each, study, COLOURS[row % len(COLOURS)])
+
     with mpl.rc_context(STYLE):
-        figure = Figure(
-            figsize=(panel_width(mine) * len(questions) + 0.5, 3.3 * len(factors) + 0.3),
-            layout=ConstrainedLayoutEngine(h_pad=0.12, w_pad=0.06),
-        )
-        grid = figure.subplots(len(factors), len(questions), sharey="row", squeeze=False)
-        for axes in grid.ravel():
-            axes.set_axis_off()
-        for each in mine:
-            row, column = factors.index(each.row.name), questions.index(each.row.question)
-            axes = grid[row][column]
-            axes.set_axis_on()
-            draw_means(axes, each, study, COLOURS[row % len(COLOURS)])
-            axes.set_xlabel(each.row.name)
-            if row == 0:
-                axes.set_title(sentence_case(each.row.question), fontweight="bold")
-            label_scale(axes, study.question(each.row.question), named=column == 0)
+        figure = factor_grid(study, mine, draw, height=3.3, room=0.3)
+        first = study.question(mine[0].row.question)
         caption = (
-            f"Mean ratings by factor (rows) and question (columns). {answer_scale(study.question(questions[0]))}"
+            f"Mean ratings by factor (rows) and question (columns). {answer_scale(first)}"
             f"Bars: {interval_name(mine[0].mode, confidence)}. {discs_named(mine)}"
         )
         return drawn(figure, f"figure-4-5-factors{suffix}", caption)
@@ -100,11 +83,6 @@ def comparison_figure(study: StudyInfo, mine: Sequence[Analysed], confidence: fl
             f"Bars: {interval_name(mine[0].mode, confidence)}. {discs_named(mine)}"
         )
         return drawn(figure, "figure-4-6-comparison", caption)
-
-
-def panel_width(mine: Sequence[Analysed]) -> float:
-    """Inches of a panel: wider for more levels."""
-    return float(np.clip(0.45 * max(len(each.row.levels) for each in mine), 3.1, 4.4))
 
 
 def thinned(axes: Axes, labels: Sequence[str]) -> None:
@@ -167,19 +145,6 @@ def draw_answers(axes: Axes, each: Analysed, codes: list[object]) -> None:
             zorder=1,
             clip_on=False,
         )
-
-
-def label_scale(axes: Axes, question: Question, named: bool, what: str = "mean rating") -> None:
-    """The whole scale, its ends named once a row."""
-    if question.scale is not None:
-        axes.set_ylim(0.6, question.scale + 0.4)
-    if question.scale is not None and question.scale <= 11:
-        axes.set_yticks(range(1, question.scale + 1))
-    axes.grid(axis="y", color="#eceef1", linewidth=0.8, zorder=0)
-    axes.set_axisbelow(True)
-    axes.tick_params(axis="y", length=0)
-    if named:
-        axes.set_ylabel(what)
 
 
 def answer_scale(question: Question) -> str:

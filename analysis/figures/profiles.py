@@ -7,17 +7,15 @@ import numpy as np
 import pandas as pd
 from matplotlib.axes import Axes
 from matplotlib.collections import LineCollection
-from matplotlib.figure import Figure
-from matplotlib.layout_engine import ConstrainedLayoutEngine
 from matplotlib.lines import Line2D
 from numpy.typing import NDArray
 
-from analysis.figures.means import ACROSS, label_scale, panel_width, thinned
+from analysis.figures.grid import factor_grid, in_parts
+from analysis.figures.means import thinned
 from analysis.figures.style import STYLE, Drawing, drawn
 from analysis.results import Analysed
 from analysis.sentences import ordered_means
 from analysis.study import StudyInfo
-from analysis.wording import sentence_case
 
 LINES = 120
 """More lines in a panel hide each other: of more people every so-manieth is drawn."""
@@ -28,36 +26,18 @@ WITH, AGAINST = "#6d7480", "#b84c00"
 
 def profile_figures(study: StudyInfo, found: Sequence[Analysed]) -> list[Drawing]:
     """A factor per row, a question per column, up to three questions in a figure; none between different people."""
-    mine = drawable(found)
-    questions = list(dict.fromkeys(each.row.question for each in mine))
-    parts = [questions[i : i + ACROSS] for i in range(0, len(questions), ACROSS)]
-    return [
-        profile_figure(study, [each for each in mine if each.row.question in part], f"figure-people{suffix}")
-        for part, suffix in zip(parts, ["", *(f"-{number}" for number in range(2, len(parts) + 1))], strict=False)
-    ]
+    return [profile_figure(study, part, f"figure-people{suffix}") for part, suffix in in_parts(drawable(found))]
 
 
 def profile_figure(study: StudyInfo, mine: Sequence[Analysed], stem: str) -> Drawing:
     """All panels of some questions."""
-    factors = list(dict.fromkeys(each.row.name for each in mine))
-    questions = list(dict.fromkeys(each.row.question for each in mine))
+
+    def draw(axes: Axes, each: Analysed, _: int) -> None:
+        """One panel."""
+        draw_people(axes, each)
+
     with mpl.rc_context(STYLE):
-        figure = Figure(
-            figsize=(panel_width(mine) * len(questions) + 0.5, 2.55 * len(factors) + 0.5),
-            layout=ConstrainedLayoutEngine(h_pad=0.1, w_pad=0.06),
-        )
-        grid = figure.subplots(len(factors), len(questions), sharey="row", squeeze=False)
-        for axes in grid.ravel():
-            axes.set_axis_off()
-        for each in mine:
-            row, column = factors.index(each.row.name), questions.index(each.row.question)
-            axes = grid[row][column]
-            axes.set_axis_on()
-            draw_people(axes, each)
-            axes.set_xlabel(each.row.name)
-            label_scale(axes, study.question(each.row.question), named=column == 0, what="rating")
-            if row == 0:
-                axes.set_title(sentence_case(each.row.question), fontweight="bold", pad=16)
+        figure = factor_grid(study, mine, draw, height=2.55, room=0.5, what="rating", pad=16)
         figure.legend(
             handles=[
                 Line2D([], [], color=WITH, linewidth=1),

@@ -8,7 +8,8 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.layout_engine import ConstrainedLayoutEngine
 
-from analysis.figures.means import SIDE_BY_SIDE, answer_scale, interval_name, label_scale
+from analysis.figures.grid import label_scale
+from analysis.figures.means import SIDE_BY_SIDE, answer_scale, interval_name
 from analysis.figures.style import COLOURS, STYLE, Drawing, drawn, folded, place_thumbnail
 from analysis.results import Analysed
 from analysis.rows import Level

@@ -10,7 +10,7 @@ from analysis.evidence import Evidence
 from analysis.figures.cues import cue_figure
 from analysis.section import Section, rendered
 from analysis.tables import Table, told_once
-from analysis.wording import apa_df, apa_p, counted, no_zero, percent, sentence_case, signed, thesis_p
+from analysis.wording import apa_df, apa_p, counted, interval, no_zero, percent, sentence_case, signed, thesis_p
 
 ELSEWHERE = (
     "Pictures made elsewhere have cues of their whole area, background included, and no thickness: they are listed in "
@@ -156,7 +156,7 @@ def apa_cue(one: CueFindings, alpha: float, level: str) -> str:
     return (
         f"Within participants, ratings of “{one.question}” were regressed on each standardised image cue over "
         f"{cue['pictures']:.0f} different pictures; {which} was that on {name_of(cue)}, b = {signed(cue['slope'])}, "
-        f"{level} [{signed(cue['ci_low'])}, {signed(cue['ci_high'])}], t({apa_df(cue['df'])}) = {signed(cue['t'])}, "
+        f"{level} {interval(cue['ci_low'], cue['ci_high'])}, t({apa_df(cue['df'])}) = {signed(cue['t'])}, "
         f"{of_people(one, cue)}, a test that takes these pictures as given; over pictures, {of_pictures(one, cue)}."
     )
 
@@ -187,9 +187,8 @@ def slope_cells(cue: dict[Hashable, Any]) -> tuple[str, ...]:
     of_r = "–" if pd.isna(cue["p_pictures_holm"]) else thesis_p(cue["p_pictures_holm"])
     if pd.isna(cue["p"]):
         return (r, of_r, signed(cue["slope"]), "–", "–", f"{cue['df']:.0f}", "–", "–")
-    interval = f"[{signed(cue['ci_low'])}, {signed(cue['ci_high'])}]"
     test = (signed(cue["t"]), f"{cue['df']:.0f}", thesis_p(cue["p"]), thesis_p(cue["p_holm"]))
-    return (r, of_r, signed(cue["slope"]), interval, *test)
+    return (r, of_r, signed(cue["slope"]), interval(cue["ci_low"], cue["ci_high"]), *test)
 
 
 def table_of_regression(found: Sequence[CueFindings], level: str) -> Table | None:
@@ -199,7 +198,7 @@ def table_of_regression(found: Sequence[CueFindings], level: str) -> Table | Non
             one.question if place == 0 else "",
             cue_name(str(cue["cue"])),
             signed(cue["slope"]),
-            f"[{signed(cue['ci_low'])}, {signed(cue['ci_high'])}]",
+            interval(cue["ci_low"], cue["ci_high"]),
             signed(cue["t"]),
             f"{cue['df']:.0f}",
             thesis_p(cue["p"]),

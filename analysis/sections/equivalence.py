@@ -12,7 +12,7 @@ from analysis.section import Section, rendered
 from analysis.statistics.equivalence import UNTESTED
 from analysis.statistics.equivalence_power import people_for_equivalence
 from analysis.tables import Table, sizes_text, told_once
-from analysis.wording import apa_df, apa_p, counted, joined, percent, sentence_case, signed, steps, thesis_p
+from analysis.wording import apa_df, apa_p, counted, interval, joined, percent, sentence_case, signed, steps, thesis_p
 
 NAMED = 3  # pairs that a sentence names; more are counted
 PASTED = 10  # pairs that a sentence to paste holds
@@ -111,8 +111,8 @@ def table_of_equivalence(judged: Sequence[Judged], plan: EquivalencePlan) -> Tab
         if one.shown
         for place, pair in enumerate(one.records)
     ]
-    interval = f"{percent(1 - 2 * plan.alpha)} CI"
-    head = ("Configuration", "Pair", "Verdict", "Difference", interval, "df", "n", "p TOST", "Holm", "p diff.")
+    level = f"{percent(1 - 2 * plan.alpha)} CI"
+    head = ("Configuration", "Pair", "Verdict", "Difference", level, "df", "n", "p TOST", "Holm", "p diff.")
     note = (
         "p TOST: the larger of the two one-sided tests; it decides with p diff., the two-sided t test, each at "
         f"α = {plan.alpha:g}. Holm: p TOST adjusted for the number of pairs of the row. One pair chosen after seeing "
@@ -128,10 +128,9 @@ def cells(pair: dict[str, Any]) -> tuple[str, ...]:
     difference, n = signed(pair["difference"]), sizes_text((pair["n_a"], pair["n_b"]))
     if pair["verdict"] == UNTESTED:
         return (difference, "–", "–", n, *["–"] * 3)
-    interval = f"[{signed(pair['ci_low'])}, {signed(pair['ci_high'])}]"
     return (
         difference,
-        interval,
+        interval(pair["ci_low"], pair["ci_high"]),
         apa_df(pair["df"]),
         n,
         *(thesis_p(pair[p]) for p in ("p_equivalence", "p_equivalence_holm", "p_difference")),
@@ -159,7 +158,7 @@ def apa_equivalence(one: Judged) -> str:
 def apa_pair(pair: dict[str, Any], level: str) -> str:
     """M = 0.45, t(43) = −0.14, p = .443, 90% CI [−0.08, 0.99], undecided."""
     side = "low" if pair["p_low"] >= pair["p_high"] else "high"
-    interval = f"[{signed(pair['ci_low'])}, {signed(pair['ci_high'])}]"
+    bounds = interval(pair["ci_low"], pair["ci_high"])
     test = f"t({apa_df(pair['df'])}) = {signed(pair[f't_{side}'])}, {apa_p(pair['p_equivalence'])}"
     verdict = {"both": "equivalent and different"}.get(pair["verdict"], pair["verdict"])
-    return f"M = {signed(pair['difference'])}, {test}, {level} {interval}, {verdict}"
+    return f"M = {signed(pair['difference'])}, {test}, {level} {bounds}, {verdict}"

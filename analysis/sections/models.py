@@ -1,6 +1,6 @@
 """Beside the analysis of variance: ordinal regression, mixed models, where variance lies, and whether tests agree."""
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from typing import Any
 
 import pandas as pd
@@ -11,9 +11,11 @@ from analysis.models import Modelled, models_of, variance_of
 from analysis.plan import AnalysisPlan
 from analysis.results import METHODS, Analysed
 from analysis.section import Section, rendered
+from analysis.statistics.mixed import MixedFit
+from analysis.statistics.ordinal import OrdinalFit
 from analysis.tables import SHOWN_LEVELS
 from analysis.verdicts import agreement_of_tests
-from analysis.wording import apa_p, counted, joined, percent, signed, true_minus
+from analysis.wording import apa_p, counted, interval, joined, percent, signed, true_minus
 
 TEST = ("chi2", "df", "F", "df2", "p")
 KINDS = {"ordinal": "Ordinal regression", "mixed": "Mixed model"}
@@ -64,18 +66,27 @@ def place_of(each: Analysed) -> dict[str, str]:
     return {"question": each.row.question, "factor": each.row.name, "method": METHODS[each.mode]}
 
 
-def ordinal_table(fitted: Sequence[Modelled]) -> pd.DataFrame:
-    """`chi2, df, F, df2, p, n, participants, log_likelihood` of each row, or the `reason` why it has none."""
+def table_of_kind(fitted: Sequence[Modelled], kind: str, facts: Callable[[Any], dict[str, Any]]) -> pd.DataFrame:
+    """Every row's test by one kind of model with the `facts` of its fit, or the `reason` why it has none."""
     rows: list[dict[str, Any]] = []
     for model in fitted:
         for each in model.found:
-            test, fit = model.test(model.ordinal, each), model.ordinal
-            if test is not None and fit is not None:
-                facts = {"n": fit.n, "participants": fit.clusters or None, "log_likelihood": fit.log_likelihood}
-                rows.append({**place_of(each), **{key: test[key] for key in TEST}, **facts, "reason": ""})
-            elif "ordinal" in model.missing:
-                rows.append({**place_of(each), "reason": model.missing["ordinal"]})
+            fit = getattr(model, kind)
+            test = model.test(fit, each)
+            if test is not None:
+                rows.append({**place_of(each), **{key: test[key] for key in TEST}, **facts(fit)})
+            elif kind in model.missing:
+                rows.append({**place_of(each), "reason": model.missing[kind]})
     return pd.DataFrame(rows)
+
+
+def ordinal_table(fitted: Sequence[Modelled]) -> pd.DataFrame:
+    """`chi2, df, F, df2, p, n, participants, log_likelihood` of each row, or the `reason` why it has none."""
+
+    def facts(fit: OrdinalFit) -> dict[str, Any]:
+        return {"n": fit.n, "participants": fit.clusters or None, "log_likelihood": fit.log_likelihood, "reason": ""}
+
+    return table_of_kind(fitted, "ordinal", facts)
 
 
 def odds_table(fitted: Sequence[Modelled]) -> pd.DataFrame:
@@ -91,18 +102,13 @@ def odds_table(fitted: Sequence[Modelled]) -> pd.DataFrame:
 
 def mixed_table(fitted: Sequence[Modelled]) -> pd.DataFrame:
     """`chi2, df, F, df2, p, n`, the model's variances and what it lacks, of each row; or `reason`: why it has none."""
-    rows: list[dict[str, Any]] = []
-    for model in fitted:
-        for each in model.found:
-            test, fit = model.test(model.mixed, each), model.mixed
-            if test is not None and fit is not None:
-                parts = dict(fit.variances[["term", "variance"]].itertuples(index=False, name=None))
-                facts = {f"variance_{name}": value for name, value in parts.items()}
-                lacks = {"left_out": "; ".join(fit.left_out), "at_zero": "; ".join(fit.at_zero)}
-                rows.append({**place_of(each), **{key: test[key] for key in TEST}, "n": fit.n, **facts, **lacks})
-            elif "mixed" in model.missing:
-                rows.append({**place_of(each), "reason": model.missing["mixed"]})
-    return pd.DataFrame(rows)
+
+    def facts(fit: MixedFit) -> dict[str, Any]:
+        parts = dict(fit.variances[["term", "variance"]].itertuples(index=False, name=None))
+        variances = {f"variance_{name}": value for name, value in parts.items()}
+        return {"n": fit.n, **variances, "left_out": "; ".join(fit.left_out), "at_zero": "; ".join(fit.at_zero)}
+
+    return table_of_kind(fitted, "mixed", facts)
 
 
 def cautions(fitted: Sequence[Modelled]) -> list[str]:
@@ -168,7 +174,7 @@ def odds_in_words(odds: pd.DataFrame, factor: str, confidence: float) -> str:
         return ""
     cells = [
         f"{true_minus(str(row['level']))}: OR = {signed(row['odds_ratio'])}, {percent(confidence)} CI "
-        f"[{signed(row['ci_low'])}, {signed(row['ci_high'])}]"
+        f"{interval(row['ci_low'], row['ci_high'])}"
         for row in mine.to_dict("records")
     ]
     return f" (against {true_minus(str(mine['against'].iloc[0]))}: {'; '.join(cells)})"

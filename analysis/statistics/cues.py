@@ -176,7 +176,7 @@ def correlation(means: Floats, z: Floats) -> tuple[float, float]:
         return np.nan, np.nan
     found = stats.pearsonr(means, z)
     r = float(found.statistic)
-    return r, float(found.pvalue) if len(z) > 2 and abs(r) < 1 - SAME else np.nan
+    return r, not_zero(found.pvalue) if len(z) > 2 and abs(r) < 1 - SAME else np.nan
 
 
 def is_flat(values: Floats, rounding: float = FLAT) -> bool:
