@@ -15,7 +15,8 @@ from starlette.exceptions import HTTPException
 from fakesss.problem import BadInput
 from study_server import admin, participant, pictures
 from study_server.admin_door import SHORTEST_SECRET
-from study_server.database import Database, adopt_study, default_url, is_writable, open_database, secret, shown_url
+from study_server.adoption import adopt_study
+from study_server.database import Database, default_url, is_writable, open_database, secret, shown_url
 from study_server.manifest import load_study, study_changed
 from study_server.site import HERE, AtSite, Mode, Reporter, Site, sorry
 from study_server.web_safety import WebSafety

@@ -1,6 +1,5 @@
 """One database per study: opened, checked, and written to in whole transactions that are on disk when they return."""
 
-import json
 import secrets
 import threading
 import time
@@ -10,14 +9,12 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
-from sqlalchemy import Connection, Engine, create_engine, event, func, insert, select, update
+from sqlalchemy import Connection, Engine, create_engine, event, insert, select, update
 from sqlalchemy.engine import make_url
 from sqlalchemy.exc import ArgumentError, DatabaseError, NoSuchModuleError, OperationalError
 
 from fakesss.problem import BadInput
 from study_server import schema
-from study_server.assignment import order_rows
-from study_server.manifest import BuiltStudy
 
 BUSY_TIMEOUT_S = 30.0
 """How long a writer of another process is waited for."""
@@ -131,43 +128,3 @@ def is_writable(database: Database) -> bool:
     except DatabaseError:
         return False
     return True
-
-
-def adopt_study(database: Database, study: BuiltStudy, shown: str) -> None:
-    """Note the study and its order rows on first use.
-
-    Raises `BadInput` if live ratings of a study with other words or other pictures are in the same database: answers
-    to two different studies must not be mixed. Pilot sessions of an earlier version stay, apart, and are not resumed.
-    """
-    with database.writing() as connection:
-        others = connection.scalar(
-            select(func.count())
-            .select_from(schema.sessions)
-            .where(schema.sessions.c.mode == "live", schema.sessions.c.study != study.identity)
-        )
-        if others:
-            raise BadInput(
-                f"{shown}: holds {others} live session(s) of another version of this study; "
-                "move that file aside, or restore study.toml and its pictures as they were"
-            )
-        this = schema.studies.c.identity == study.identity
-        if not connection.execute(update(schema.studies).where(this).values(opened_at=time.time())).rowcount:
-            insert_study(connection, study)
-
-
-def insert_study(connection: Connection, study: BuiltStudy) -> None:
-    """The study's words and its order rows, as they will be for all who take part."""
-    connection.execute(
-        insert(schema.studies).values(
-            identity=study.identity,
-            sha256=study.sha256,
-            title=study.title,
-            settings=json.loads(study.settings.model_dump_json()),
-            opened_at=time.time(),
-        )
-    )
-    rows = order_rows([stimulus.id for stimulus in study.stimuli], study.settings.survey.order, study.seed)
-    connection.execute(
-        insert(schema.order_rows),
-        [{"study": study.identity, "row": number, "stimuli": row} for number, row in enumerate(rows)],
-    )

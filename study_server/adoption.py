@@ -1,0 +1,52 @@
+"""A study meets its database: noted on first use, refused where answers to two studies would be mixed."""
+
+import json
+import time
+
+from sqlalchemy import Connection, func, insert, select, update
+
+from fakesss.problem import BadInput
+from study_server import schema
+from study_server.assignment import order_rows
+from study_server.database import Database
+from study_server.manifest import BuiltStudy
+
+
+def adopt_study(database: Database, study: BuiltStudy, shown: str) -> None:
+    """Note the study and its order rows on first use.
+
+    Raises `BadInput` if live ratings of a study with other words or other pictures are in the same database: answers
+    to two different studies must not be mixed. Pilot sessions of an earlier version stay, apart, and are not resumed.
+    """
+    with database.writing() as connection:
+        others = connection.scalar(
+            select(func.count())
+            .select_from(schema.sessions)
+            .where(schema.sessions.c.mode == "live", schema.sessions.c.study != study.identity)
+        )
+        if others:
+            raise BadInput(
+                f"{shown}: holds {others} live session(s) of another version of this study; "
+                "move that file aside, or restore study.toml and its pictures as they were"
+            )
+        this = schema.studies.c.identity == study.identity
+        if not connection.execute(update(schema.studies).where(this).values(opened_at=time.time())).rowcount:
+            insert_study(connection, study)
+
+
+def insert_study(connection: Connection, study: BuiltStudy) -> None:
+    """The study's words and its order rows, as they will be for all who take part."""
+    connection.execute(
+        insert(schema.studies).values(
+            identity=study.identity,
+            sha256=study.sha256,
+            title=study.title,
+            settings=json.loads(study.settings.model_dump_json()),
+            opened_at=time.time(),
+        )
+    )
+    rows = order_rows([stimulus.id for stimulus in study.stimuli], study.settings.survey.order, study.seed)
+    connection.execute(
+        insert(schema.order_rows),
+        [{"study": study.identity, "row": number, "stimuli": row} for number, row in enumerate(rows)],
+    )
