@@ -1,8 +1,5 @@
 """Starting, stopping, killing: nobody is lost, and what cannot be served says so in one sentence."""
 
-import contextlib
-import signal
-import socket
 import subprocess
 import sys
 import threading
@@ -12,6 +9,7 @@ from typing import Any
 
 import httpx
 import pytest
+from server_process import server_process
 from study_fixture import write_study
 from survey_client import JSON, Participant
 
@@ -21,55 +19,29 @@ from study_server.manifest import load_study
 from study_server.serve import announce, listening, serve, served
 from study_server.simulate import simulate
 
-PROGRAM = "import sys; from pathlib import Path; from study_server.serve import serve; "
-
-
-def started_process(study: Path, port: int) -> "subprocess.Popen[bytes]":
-    """A server process of its own, answering."""
-    program = f"{PROGRAM} serve(Path(sys.argv[1]), port=int(sys.argv[2]))"
-    process = subprocess.Popen([sys.executable, "-c", program, str(study), str(port)], stderr=subprocess.DEVNULL)
-    for _ in range(400):
-        with contextlib.suppress(httpx.TransportError):  # not listening yet
-            if httpx.get(f"http://127.0.0.1:{port}/health").status_code == 200:
-                return process
-        time.sleep(0.05)
-    process.kill()
-    raise AssertionError("the server did not start")
-
-
-def free_port() -> int:
-    with socket.socket() as probe:
-        probe.bind(("127.0.0.1", 0))
-        return int(probe.getsockname()[1])
-
 
 @pytest.mark.parametrize("kills", [2, pytest.param(100, marks=[pytest.mark.long, pytest.mark.timeout(1200)])])
 def test_killed_under_load_every_acknowledged_rating_is_there_once(tmp_path: Path, kills: int) -> None:
-    study, port = write_study(tmp_path, 9), free_port()
+    study = write_study(tmp_path / "study", 9)
     raters = 12 + 8 * kills
     result: dict[str, Any] = {}
 
-    def run() -> None:
-        address = f"http://127.0.0.1:{port}"
-        built = load_study(study)
-        secret = admin_secret(study)
-        result.update(simulate(address, built, secret, started=raters, completed=raters - 2, progress=False))
+    with server_process(study, tmp_path / "server.log") as server:
 
-    process = started_process(study, port)
-    load = threading.Thread(target=run)
-    load.start()
-    killed = 0
-    try:
+        def run() -> None:
+            built = load_study(study)
+            secret = admin_secret(study)
+            result.update(simulate(server.url, built, secret, started=raters, completed=raters - 2, progress=False))
+
+        load = threading.Thread(target=run)
+        load.start()
+        killed = 0
         while load.is_alive() and killed < kills:
             time.sleep(0.08 + 0.01 * (killed % 7))
-            process.send_signal(signal.SIGKILL)
-            process.wait()
+            server.kill()
             killed += 1
-            process = started_process(study, port)
+            server.start()
         load.join()
-    finally:
-        process.kill()
-        process.wait()
     assert killed == kills  # the load lasted
     assert (result["started"], result["completed"]) == (raters, raters - 2)
     assert (result["lost"], result["duplicated"]) == (0, 0)
