@@ -9,14 +9,14 @@ from fastapi import FastAPI, Request, Response
 from fastapi.exceptions import RequestValidationError
 from fastapi.responses import JSONResponse
 from fastapi.staticfiles import StaticFiles
-from sqlalchemy.exc import DatabaseError
+from sqlalchemy.exc import DatabaseError, TimeoutError
 from starlette.exceptions import HTTPException
 
 from fakesss.problem import BadInput
 from study_server import admin, participant, pictures
 from study_server.admin_door import SHORTEST_SECRET
 from study_server.adoption import adopt_study
-from study_server.database import Database, default_url, is_writable, open_database, secret, shown_url
+from study_server.database import Database, default_url, is_writable, open_database, reason, secret, shown_url
 from study_server.manifest import load_study, study_changed
 from study_server.site import HERE, AtSite, Mode, Reporter, Site, sorry
 from study_server.web_safety import WebSafety
@@ -49,6 +49,7 @@ def create_app(
     for router in (pictures.router, admin.router, participant.router):
         app.include_router(router)
     app.add_exception_handler(DatabaseError, not_saved)
+    app.add_exception_handler(TimeoutError, not_saved)
     app.add_exception_handler(RequestValidationError, not_understood)
     app.add_exception_handler(HTTPException, no_page)
     app.add_exception_handler(admin.Locked, admin.ask_secret)
@@ -100,7 +101,7 @@ def health(site: AtSite) -> Response:
 
 def not_saved(request: Request, error: Exception) -> Response:
     """The database failed: nothing was stored, and the browser is to try again."""
-    log.error("the database failed: %s", getattr(error, "orig", error))
+    log.error("the database failed: %s", reason(error) if isinstance(error, DatabaseError) else error)
     return sorry(request, 503, "This could not be saved just now; please try again in a moment.")
 
 

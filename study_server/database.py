@@ -1,48 +1,73 @@
-"""One database per study: opened, checked, and written to in whole transactions that are on disk when they return."""
+"""One database per study: opened, checked, read in snapshots, written to in transactions that are on disk at the end.
+
+SQLite has one writer (`group_commit`), PostgreSQL many (`retries`); who reads and writes need not know which.
+"""
 
 import secrets
-import threading
 import time
-from collections.abc import Iterator
+import weakref
+from collections.abc import Callable, Iterator, Mapping
+from concurrent.futures import Future
 from contextlib import contextmanager
-from dataclasses import dataclass, field
 from pathlib import Path
-from typing import Any
+from typing import Any, TypeVar
 
-from sqlalchemy import Connection, Engine, create_engine, event, insert, select, update
+from sqlalchemy import Connection, Table, func, select, update
+from sqlalchemy.dialects import postgresql, sqlite
 from sqlalchemy.engine import make_url
-from sqlalchemy.exc import ArgumentError, DatabaseError, NoSuchModuleError, OperationalError
+from sqlalchemy.exc import ArgumentError, DatabaseError, NoSuchModuleError, TimeoutError
 
 from fakesss.problem import BadInput
 from study_server import schema
+from study_server.engines import AT_ONCE, connect
+from study_server.group_commit import GroupCommit
+from study_server.retries import Retries
 
-BUSY_TIMEOUT_S = 30.0
-"""How long a writer of another process is waited for."""
+T = TypeVar("T")
 
 
-@dataclass(frozen=True)
 class Database:
-    """The engine and this process's writer lock.
+    """A study's database as this process uses it: readers see snapshots, a commit means on disk.
 
-    SQLite lets one connection write. Waiting at a lock is fair and wakes at once; SQLite's own busy handler sleeps
-    and may pass over a waiter for long.
+    `write` is for what many send at the same moment, `writing` for all else. Neither may be used inside the other.
     """
 
-    engine: Engine
-    writer: threading.Lock = field(default_factory=threading.Lock)
+    def __init__(self, url: str) -> None:
+        self.engine = connect(url)
+        self.is_sqlite = self.engine.dialect.name == "sqlite"
+        self.writer = GroupCommit(self.engine) if self.is_sqlite else Retries(self.engine, AT_ONCE)
+        snapshots = {} if self.is_sqlite else {"isolation_level": "REPEATABLE READ", "postgresql_readonly": True}
+        self.reader = self.engine.execution_options(**snapshots)
+        weakref.finalize(self, self.writer.close)  # what is waiting is written before the process ends
 
     @contextmanager
     def reading(self) -> Iterator[Connection]:
-        """A connection that sees one snapshot."""
-        with self.engine.connect() as connection:
+        """A connection that sees one snapshot, however long it reads and whatever others write."""
+        with self.reader.connect() as connection:
             yield connection
 
     @contextmanager
     def writing(self) -> Iterator[Connection]:
-        """A transaction that holds the write lock from its first statement; on disk when the block is left."""
-        writable = self.engine.execution_options(sqlite_begin="IMMEDIATE")
-        with self.writer, writable.begin() as connection:
+        """A transaction in the caller's thread, with SQLite alone from its first statement; on disk when left."""
+        with self.writer.writing() as connection:
             yield connection
+
+    def write(self, work: Callable[[Connection], T]) -> T:
+        """The result of `work` once what it wrote is on disk; what it raises undoes it whole.
+
+        `work` may share its commit with others, and may be run again after a failure that left nothing (PostgreSQL),
+        so it must do nothing but read, write and reckon. Raises `sqlalchemy.exc.DatabaseError` if it is not on disk.
+        """
+        return self.submit(work).result()
+
+    def submit(self, work: Callable[[Connection], T]) -> "Future[T]":
+        """The same without waiting, for asynchronous callers: `await asyncio.wrap_future(database.submit(work))`."""
+        return self.writer.submit(work)
+
+    def close(self) -> None:
+        """What is waiting is written, and the connections closed; a use after that opens others."""
+        self.writer.close()
+        self.engine.dispose()
 
 
 def default_url(folder: Path) -> str:
@@ -57,17 +82,37 @@ def open_database(url: str) -> Database:
     """
     shown = shown_url(url)
     try:
-        database = Database(connect(url))
+        database = Database(url)
         with database.writing() as connection:
+            take_turns(connection)
             schema.tables.create_all(connection)
             version = remembered(connection, "schema_version", lambda: schema.VERSION)
-    except (OperationalError, DatabaseError) as error:
-        raise BadInput(f"{shown}: cannot be opened for writing ({error.orig}); check the path and its rights") from None
+    except DatabaseError as error:
+        raise BadInput(f"{shown}: cannot be opened for writing ({reason(error)}); check it and its rights") from None
     except (ArgumentError, NoSuchModuleError, ImportError) as error:
-        raise BadInput(f"{shown}: is no database address ({error}); write sqlite:///FILE") from None
+        raise BadInput(
+            f"{shown}: is no database address ({error}); write sqlite:///FILE or postgresql://USER@HOST/NAME"
+        ) from None
     if version != schema.VERSION:
         raise BadInput(f"{shown}: has schema {version}, this program knows {schema.VERSION}; use the one it is from")
     return database
+
+
+def take_turns(connection: Connection) -> None:
+    """Until this transaction ends, no other process that asks for the same is past this line.
+
+    For what must be looked up and then made once by several workers that start together. SQLite's writers take turns
+    anyway.
+    """
+    if connection.dialect.name == "postgresql":
+        connection.execute(select(func.pg_advisory_xact_lock(int.from_bytes(b"fakesss"))))
+
+
+def reason(error: DatabaseError) -> str:
+    """What the database said, in a line, without the values it said it of: they may be tokens and answers."""
+    diagnosis = getattr(error.orig, "diag", None)
+    said = getattr(diagnosis, "message_primary", None) or str(error.orig)
+    return " ".join(said.split())
 
 
 def shown_url(url: str) -> str:
@@ -78,39 +123,23 @@ def shown_url(url: str) -> str:
         return f'"{url}"'
 
 
-def connect(url: str) -> Engine:
-    """An engine whose transactions begin when and how we say."""
-    engine = create_engine(url)
-    if engine.dialect.name == "sqlite":
-        engine = create_engine(url, connect_args={"timeout": BUSY_TIMEOUT_S}, pool_size=20, max_overflow=40)
-        event.listen(engine, "connect", prepare_sqlite)
-        event.listen(engine, "begin", begin_sqlite)
-    return engine
-
-
-def prepare_sqlite(connection: Any, _record: Any) -> None:
-    """Pragmas of every new SQLite connection.
-
-    synchronous=FULL makes a commit wait for the disk: without it a rating could be acknowledged and lost.
-    secure_delete overwrites what a withdrawal deletes.
-    """
-    connection.isolation_level = None  # the driver must not begin transactions by itself
-    for pragma in ("journal_mode=WAL", "synchronous=FULL", "foreign_keys=ON", "secure_delete=ON"):
-        connection.execute(f"PRAGMA {pragma}")
-
-
-def begin_sqlite(connection: Connection) -> None:
-    """BEGIN, or BEGIN IMMEDIATE for writers, which then cannot fail half-way for want of the lock."""
-    connection.exec_driver_sql(f"BEGIN {connection.get_execution_options().get('sqlite_begin', '')}")
-
-
-def remembered(connection: Connection, key: str, make: Any) -> str:
-    """The value of `key` in `meta`; made and stored on first use."""
-    value = connection.scalar(select(schema.meta.c.value).where(schema.meta.c.key == key))
+def remembered(connection: Connection, key: str, make: Callable[[], object]) -> str:
+    """The value of `key` in `meta`; made and stored on first use, once even if several processes ask at once."""
+    stored = select(schema.meta.c.value).where(schema.meta.c.key == key)
+    value = connection.scalar(stored)
     if value is None:
-        value = str(make())
-        connection.execute(insert(schema.meta).values(key=key, value=value))
+        insert_if_new(connection, schema.meta, {"key": key, "value": str(make())})
+        value = connection.scalar(stored)
     return str(value)
+
+
+def insert_if_new(connection: Connection, table: Table, row: Mapping[str, Any]) -> bool:
+    """Insert `row` unless one with an equal key is there; whether it was inserted.
+
+    A transaction that is inserting the same key just now is waited for.
+    """
+    insert = sqlite.insert if connection.dialect.name == "sqlite" else postgresql.insert
+    return connection.execute(insert(table).values(row).on_conflict_do_nothing()).rowcount == 1
 
 
 def secret(database: Database, name: str) -> str:
@@ -121,10 +150,14 @@ def secret(database: Database, name: str) -> str:
 
 def is_writable(database: Database) -> bool:
     """Whether a row can be brought to disk right now."""
+
+    def touch(connection: Connection) -> None:
+        now = str(time.time())
+        remembered(connection, "health", lambda: now)
+        connection.execute(update(schema.meta).where(schema.meta.c.key == "health").values(value=now))
+
     try:
-        with database.writing() as connection:
-            remembered(connection, "health", time.time)
-            connection.execute(update(schema.meta).where(schema.meta.c.key == "health").values(value=str(time.time())))
-    except DatabaseError:
+        database.write(touch)
+    except (DatabaseError, TimeoutError):
         return False
     return True

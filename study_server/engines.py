@@ -1,0 +1,115 @@
+"""Engines for the two databases we know, set so that a commit means: on disk, and nobody waits for ever."""
+
+from typing import Any
+
+from sqlalchemy import URL, Connection, Engine, create_engine, event
+from sqlalchemy.engine import make_url
+from sqlalchemy.exc import ArgumentError
+
+from fakesss.problem import BadInput
+
+BUSY_TIMEOUT_S = 30
+"""How long a writer of another process, or a lock, is waited for."""
+
+STATEMENT_TIMEOUT_S = 300
+"""How long one statement may take: the export of a large study is one."""
+
+IDLE_TIMEOUT_S = 900
+"""How long PostgreSQL keeps a transaction of which it hears nothing: an export is read at its reader's pace."""
+
+AT_ONCE = 10
+"""Transactions at once in one process on PostgreSQL, of writers and as many of readers."""
+
+DRIVERS = {"postgres": "postgresql+psycopg", "postgresql": "postgresql+psycopg"}
+"""What people write, and the driver we use for it."""
+
+POSTGRESQL = {
+    "connect_timeout": 10,
+    "keepalives_idle": 30,
+    "keepalives_interval": 10,
+    "keepalives_count": 3,
+    "tcp_user_timeout": 30_000,
+    "application_name": "fakesss",
+}
+"""libpq's parameters: a server that has gone silent is noticed within a minute. What the address says goes first."""
+
+
+def connect(address: str) -> Engine:
+    """An engine whose transactions begin when and how we say.
+
+    Parameters are kept out of errors and logs: they hold participants' tokens and answers.
+    """
+    url = make_url(address)
+    url = url.set(drivername=DRIVERS.get(url.drivername, url.drivername))
+    if url.get_backend_name() == "postgresql":
+        return postgresql(url)
+    if url.get_backend_name() == "sqlite":
+        return sqlite(url)
+    raise ArgumentError(f"{url.get_backend_name()} is neither SQLite nor PostgreSQL")
+
+
+def sqlite(url: URL) -> Engine:
+    """An engine on the file of `url`; `BadInput` if it names none, for in memory every answer would be lost."""
+    if url.database in (None, "", ":memory:"):
+        raise BadInput(f"{url}: names no file, so that every answer would be lost at the end; write sqlite:///FILE")
+    engine = create_engine(
+        url, connect_args={"timeout": BUSY_TIMEOUT_S}, pool_size=20, max_overflow=40, hide_parameters=True
+    )
+    event.listen(engine, "connect", prepare_sqlite)
+    event.listen(engine, "begin", begin_sqlite)
+    return engine
+
+
+def prepare_sqlite(connection: Any, _record: Any) -> None:
+    """Pragmas of every new SQLite connection.
+
+    synchronous=FULL makes a commit wait for the disk: without it a rating could be acknowledged and lost.
+    secure_delete overwrites what a withdrawal deletes.
+    """
+    connection.isolation_level = None  # the driver must not begin transactions by itself
+    for pragma in ("journal_mode=WAL", "synchronous=FULL", "foreign_keys=ON", "secure_delete=ON"):
+        connection.execute(f"PRAGMA {pragma}")
+
+
+def begin_sqlite(connection: Connection) -> None:
+    """BEGIN, or BEGIN IMMEDIATE for writers, which then cannot fail half-way for want of the lock."""
+    connection.exec_driver_sql(f"BEGIN {connection.get_execution_options().get('sqlite_begin', '')}")
+
+
+def postgresql(url: URL) -> Engine:
+    """An engine on a PostgreSQL server, by psycopg 3."""
+    arguments = {name: value for name, value in POSTGRESQL.items() if name not in url.query}
+    try:
+        engine = create_engine(
+            url,
+            connect_args=arguments,
+            pool_size=AT_ONCE,
+            max_overflow=AT_ONCE,
+            pool_timeout=BUSY_TIMEOUT_S,
+            pool_pre_ping=True,
+            hide_parameters=True,
+        )
+    except ModuleNotFoundError as error:
+        shown = url.render_as_string(hide_password=True)
+        raise BadInput(f"{shown}: needs {error.name}; install it with: pip install 'fakesss[postgres]'") from None
+    event.listen(engine, "connect", prepare_postgresql)
+    return engine
+
+
+def prepare_postgresql(connection: Any, _record: Any) -> None:
+    """Settings of every new PostgreSQL session.
+
+    A server may be set up to acknowledge before it has written (synchronous_commit=off); stricter settings stay.
+    """
+    settings = {
+        "statement_timeout": STATEMENT_TIMEOUT_S,
+        "lock_timeout": BUSY_TIMEOUT_S,
+        "idle_in_transaction_session_timeout": IDLE_TIMEOUT_S,
+    }
+    connection.autocommit = True
+    for name, seconds in settings.items():
+        connection.execute(f"SET {name} = '{seconds}s'")
+    connection.execute(
+        "SELECT set_config('synchronous_commit', 'on', false) WHERE current_setting('synchronous_commit') = 'off'"
+    )
+    connection.autocommit = False
