@@ -175,9 +175,10 @@ def most_checks(trials: int) -> int:
     """Instructed items that a session of `trials` can hold: half, rounded down.
 
     With more, the first of the equal parts would be the first trial alone, where none may be. Far fewer are wise:
-    people mind instructed items only where they are more than half of a survey (doi 10.31234/osf.io/j8qwk), and what
-    they tell does not grow with each. At least two, for one alone measures attention with error (Berinsky, Margolis
-    and Sances 2014, Separating the shirkers from the workers?, American Journal of Political Science 58).
+    people mind such items only where they are more than half of a survey (doi 10.31234/osf.io/j8qwk), one alone
+    measures attention with error (Berinsky, Margolis and Sances 2014, Separating the shirkers from the workers?,
+    American Journal of Political Science 58), and four suffice (the same with Warshaw, Using screeners to measure
+    respondent attention on self-administered surveys: which items and how many?).
     """
     return trials // 2
 
