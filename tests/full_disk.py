@@ -25,7 +25,6 @@ class SmallDisk:
 
     def __init__(self, path: Path, size: int) -> None:
         self.path = path
-        self.size = size
         root = os.geteuid() == 0
         unshare = ["unshare", "--mount", *([] if root else ["--map-root-user"])]
         self.holder = subprocess.Popen(
@@ -65,7 +64,7 @@ class SmallDisk:
 
     def remount(self, option: str) -> None:
         """Change the mounted disk's options."""
-        command = [*self.prefix, "mount", "-o", f"remount,{option},size={self.size}", str(self.path)]
+        command = [*self.prefix, "mount", "-o", f"remount,bind,{option}", str(self.path)]
         done = subprocess.run(command, capture_output=True, text=True)
         assert done.returncode == 0, f"{done.stderr.strip()}; is a file there open for writing?"
 
