@@ -4,7 +4,7 @@ BIN := .venv/bin
 PIP := $(BIN)/pip install --quiet --disable-pip-version-check --constraint constraints.txt
 PORT ?= 8000
 
-.PHONY: help setup gl study demo test test-long lint docs clean
+.PHONY: help setup gl test-tools study demo test test-long lint docs clean
 help:
 	@echo "make study      build the thesis's study and serve it at http://127.0.0.1:$(PORT)"
 	@echo "make demo       the same without people: 44 simulated raters, then demo/report/index.html"
@@ -30,6 +30,13 @@ gl:
 	$(PIP) --editable '.[docs]'
 	@touch $@
 
+test-tools:
+	@.ci/system browser postgres npm
+
+node_modules/.ready: package.json package-lock.json | test-tools
+	npm ci --ignore-scripts --no-audit --no-fund --loglevel=error
+	@touch $@
+
 study/study.toml: | setup
 	$(BIN)/fakesss new study --template thesis
 
@@ -43,12 +50,10 @@ demo: setup
 	$(BIN)/fakesss simulate demo --started 44 --completed 38 --seed 2011
 	$(BIN)/fakesss report demo
 
-test: setup .venv/.ready-test
-	@.ci/system browser
+test: setup .venv/.ready-test node_modules/.ready
 	$(BIN)/python -m pytest -m "not long" -n 2 --dist worksteal
 
-test-long: setup .venv/.ready-test
-	@.ci/system browser
+test-long: setup .venv/.ready-test node_modules/.ready
 	$(BIN)/python -m pytest -n 2 --dist worksteal --timeout 3600 --hypothesis-profile long
 
 lint: setup .venv/.ready-test
@@ -61,5 +66,5 @@ docs: setup .venv/.ready-docs
 	@echo "docs/_build/html/index.html"
 
 clean:
-	rm -rf .venv docs/_build build dist demo test-output *.egg-info .pytest_cache .hypothesis .mypy_cache .ruff_cache
+	rm -rf .venv node_modules docs/_build build dist demo test-output *.egg-info .pytest_cache .hypothesis .mypy_cache .ruff_cache
 	find . -name __pycache__ -type d -prune -exec rm -rf {} +
