@@ -2,12 +2,13 @@
 
 import json
 import time
+from dataclasses import asdict
 
 from sqlalchemy import Connection, func, insert, select, update
 
 from fakesss.problem import BadInput
 from study_server import schema
-from study_server.assignment import order_rows
+from study_server.assignment import Design
 from study_server.database import Database
 from study_server.manifest import BuiltStudy
 
@@ -45,8 +46,28 @@ def insert_study(connection: Connection, study: BuiltStudy) -> None:
             opened_at=time.time(),
         )
     )
-    rows = order_rows([stimulus.id for stimulus in study.stimuli], study.settings.survey.order, study.seed)
+    rows = design_of(study).rows()
     connection.execute(
         insert(schema.order_rows),
-        [{"study": study.identity, "row": number, "stimuli": row} for number, row in enumerate(rows)],
+        [
+            {"study": study.identity, "row": number, "trials": [asdict(trial) for trial in row]}
+            for number, row in enumerate(rows)
+        ],
+    )
+
+
+def design_of(study: BuiltStudy) -> Design:
+    """Who is shown what in which order, as the manifest and [survey] together say."""
+    survey, questions = study.settings.survey, study.settings.question
+    repeats = {stimulus.id: stimulus.repeat_of for stimulus in study.stimuli if stimulus.repeat_of is not None}
+    return Design(
+        stimuli=tuple(stimulus.id for stimulus in study.stimuli if stimulus.id not in repeats),
+        repeats=repeats,
+        questions=tuple(question.name for question in questions),
+        steps=questions[0].scale,
+        order=survey.order,
+        blocks=survey.blocks,
+        checks=survey.checks,
+        practice=survey.practice,
+        seed=study.seed,
     )

@@ -1,7 +1,7 @@
 """What the browser sends for one picture, and how it gets to disk: once, whatever happens on the way."""
 
 from collections.abc import Mapping
-from typing import Annotated, Any
+from typing import Annotated, Any, Literal
 
 from pydantic import Field
 from sqlalchemy import Connection, RowMapping, insert, select, update
@@ -10,6 +10,7 @@ from fakesss.problem import Strict
 from study_server import schema
 from study_server.manifest import BuiltStudy
 from study_server.sessions import record, unanswered
+from study_server.settings import CHECK_NAME
 
 DAY_MS = 86_400_000.0
 Milliseconds = Annotated[float, Field(ge=0, le=30 * DAY_MS)]
@@ -25,9 +26,12 @@ class Display(Strict):
     device_pixel_ratio: Annotated[float, Field(gt=0, le=100)] = Field(description="device pixels per CSS pixel")
     zoom: Annotated[float, Field(gt=0, le=100)] = Field(description="estimated page zoom, 1 = 100%")
     drawn_width_px: Pixels = Field(description="the picture's width in device pixels")
+    drawn_height_px: Pixels | None = Field(None, description="the picture's height in device pixels")
     window_width_px: Pixels = Field(description="CSS pixels")
     window_height_px: Pixels = Field(description="CSS pixels")
     focus_lost_ms: Milliseconds = Field(description="how long the page was hidden or not in front")
+    gamut: Literal["srgb", "p3", "rec2020", ""] = Field("", description="the widest the screen covers; empty: not told")
+    scaled: bool | None = Field(None, description="whether the picture was drawn in another size than its file's")
 
 
 class Answer(Strict):
@@ -72,13 +76,20 @@ def accepted(connection: Connection, study: BuiltStudy, session: RowMapping, sen
         raise Refused(409, "Another picture comes first.")
     if planned["stimulus_sha256"] != sent.stimulus_sha256:
         raise Refused(409, "The picture that was shown is not the one that belongs here; the answer was not stored.")
-    scales = {question.name: question.scale for question in study.settings.question}
+    scales = scales_of(study, planned)
     if sorted(answer.question for answer in sent.answers) != sorted(scales):
         raise Refused(422, "Every question needs exactly one answer.")
     for answer in sent.answers:
         if not 1 <= answer.rating <= scales[answer.question]:
             raise Refused(422, f"An answer must be between 1 and {scales[answer.question]}.")
     return planned
+
+
+def scales_of(study: BuiltStudy, planned: RowMapping) -> dict[str, int]:
+    """What is asked under this picture, instructed item included, with its number of steps."""
+    scales = {question.name: question.scale for question in study.settings.question}
+    asked = {name: scales[name] for name in planned["questions"]}
+    return asked if planned["check_expected"] is None else asked | {CHECK_NAME: study.settings.question[0].scale}
 
 
 def is_due(connection: Connection, session: RowMapping, planned: RowMapping) -> bool:

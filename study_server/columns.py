@@ -34,7 +34,8 @@ PARTICIPANTS = {
     "session": RATINGS["session"],
     "participant": RATINGS["participant"],
     "mode": RATINGS["mode"],
-    "status": "finished (every rating stored), active, dropped (silent for longer than the study allows), or withdrawn",
+    "status": "finished (every rating stored), active, dropped (silent for longer than the study allows), screened-out "
+    "(an answer about the person ended it), or withdrawn",
     "started_at": RATINGS["started_at"],
     "finished_at": "when the last expected rating was stored, ISO 8601 UTC; empty: not finished, or withdrawn",
     "last_seen_at": "when the participant last sent something, ISO 8601 UTC",
@@ -42,8 +43,32 @@ PARTICIPANTS = {
     "trials": "number of pictures to be rated",
     "trials_answered": "number of pictures rated",
     "ratings": "number of ratings stored",
+    "checks_failed": "number of instructed items answered otherwise than asked, as answers now stand",
+    "language": "language of the pages: en, de, es or fr",
     "comments": "what the participant wrote at the end",
     "study_sha256": RATINGS["study_sha256"],
+}
+
+CLIENT = {
+    "address": "network address of the visitor; only if the study asks for it",
+    "browser": "how the browser names itself; only if the study asks for it",
+}
+
+DISPLAYS = {
+    "session": RATINGS["session"],
+    "mode": RATINGS["mode"],
+    "trial": RATINGS["trial"],
+    "stimulus": RATINGS["stimulus"],
+    "shown_at": "when the picture first came on screen, ISO 8601 UTC, by the server's clock",
+    "device_pixel_ratio": "device pixels per CSS pixel, zoom included",
+    "zoom": "estimated page zoom, 1 = 100%",
+    "drawn_width_px": "width of the picture on screen, device pixels",
+    "drawn_height_px": "height of the picture on screen, device pixels",
+    "scaled": "1 if the picture was drawn in another size than its file's, 0 if pixel by pixel; empty: not told",
+    "gamut": "the widest of srgb, p3 and rec2020 that the browser says the screen covers; empty: not told",
+    "window_width_px": "width of the browser's viewport, CSS pixels",
+    "window_height_px": "height of the browser's viewport, CSS pixels",
+    "focus_lost_ms": "milliseconds of the trial during which the page was hidden or not in front",
 }
 
 EVENTS = {

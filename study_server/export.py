@@ -1,4 +1,4 @@
-"""The export: five CSV files that the analysis, and any other program, starts from."""
+"""The export: six CSV files that the analysis, and any other program, starts from."""
 
 import json
 import time
@@ -12,11 +12,12 @@ from sqlalchemy import Connection, RowMapping, and_, select
 from fakesss.problem import BadInput
 from study_server import schema
 from study_server.cells import csv_text, iso
-from study_server.columns import CODEBOOK, EVENTS, PARTICIPANTS, RATINGS, STIMULI
+from study_server.columns import CLIENT, CODEBOOK, DISPLAYS, EVENTS, PARTICIPANTS, RATINGS, STIMULI
 from study_server.counts import current_study, summaries
 from study_server.database import default_url, open_database, secret, shown_url
 from study_server.manifest import BuiltStudy, load_study
 from study_server.sessions import presentations, release_s, sessions
+from study_server.settings import CHECK_NAME
 from study_server.site import Mode
 from study_server.tokens import pseudonym
 
@@ -42,9 +43,8 @@ class Source:
 
 def rating_rows(source: Source) -> Iterator[dict[str, Any]]:
     """One row for each expected rating of every session not withdrawn, answered or not; latest revision."""
-    questions = [question.name for question in source.study.settings.question]
     for person in source.people():
-        if person["status"] == "withdrawn":
+        if person["status"] in ("withdrawn", "screened-out"):
             continue
         given = answers_of(source.connection, person["id"])
         shared = {
@@ -57,8 +57,17 @@ def rating_rows(source: Source) -> Iterator[dict[str, Any]]:
         for trial in trials_of(source.connection, person["id"]):
             facts = {name: trial[name] for name in RATINGS if name in trial}
             facts["shown_at"] = iso(trial["shown_at"])
-            for question in questions:
+            for question in trial["questions"]:
                 yield facts | shared | {"question": question} | given.get((trial["place"], question), {})
+            if trial["check_expected"] is not None:
+                yield facts | shared | check_row(trial, given.get((trial["place"], CHECK_NAME), {}))
+
+
+def check_row(trial: RowMapping, given: dict[str, Any]) -> dict[str, Any]:
+    """What the row of an instructed item has besides: what was asked for, and whether it was done."""
+    expected = trial["check_expected"]
+    passed = {"check_passed": int(given["rating"] == expected)} if given else {}
+    return {"question": CHECK_NAME, "check_expected": expected} | given | passed
 
 
 def trials_of(connection: Connection, session: str) -> list[RowMapping]:
@@ -88,21 +97,42 @@ def participant_rows(source: Source) -> Iterator[dict[str, Any]]:
     """One row a session, whatever became of it."""
     for person in source.people():
         about = {f"about_{name}": value for name, value in person["about"].items()}
-        yield about | {
-            "session": person["id"],
-            "participant": source.participant(person),
-            "mode": source.mode,
-            "status": person["status"],
-            "started_at": iso(person["started_at"]),
-            "finished_at": iso(person["finished_at"]),
-            "last_seen_at": iso(person["seen_at"]),
-            "order_row": person["row"] + 1,
-            "trials": person["trials"],
-            "trials_answered": person["trials_answered"],
-            "ratings": person["ratings"],
-            "comments": person["comments"],
-            "study_sha256": source.study.sha256,
-        }
+        screen = {f"screen_{name}": value for name, value in person["screen"].items()}
+        yield (
+            about
+            | person["client"]
+            | screen
+            | {
+                "session": person["id"],
+                "participant": source.participant(person),
+                "mode": source.mode,
+                "status": person["status"],
+                "started_at": iso(person["started_at"]),
+                "finished_at": iso(person["finished_at"]),
+                "last_seen_at": iso(person["seen_at"]),
+                "order_row": person["row"] + 1,
+                "trials": person["trials"],
+                "trials_answered": person["trials_answered"],
+                "ratings": person["ratings"],
+                "checks_failed": person["checks_failed"],
+                "language": person["language"],
+                "comments": person["comments"],
+                "study_sha256": source.study.sha256,
+            }
+        )
+
+
+def display_rows(source: Source) -> Iterator[dict[str, Any]]:
+    """One row for each picture of a real trial that was shown and rated: how it stood on the screen."""
+    for person in source.people():
+        for trial in trials_of(source.connection, person["id"]):
+            if trial["answered_at"] is not None:
+                facts = {name: trial[name] for name in DISPLAYS if name in trial}
+                yield facts | {
+                    "mode": source.mode,
+                    "shown_at": iso(trial["shown_at"]),
+                    "scaled": None if trial["scaled"] is None else int(trial["scaled"]),
+                }
 
 
 def event_rows(source: Source) -> Iterator[dict[str, Any]]:
@@ -129,7 +159,7 @@ def stimulus_rows(source: Source) -> Iterator[dict[str, Any]]:
 
 def codebook_rows(source: Source) -> Iterator[dict[str, Any]]:
     """One row for every column of the other tables."""
-    for name in ("ratings", "participants", "events", "stimuli"):
+    for name in ("ratings", "participants", "displays", "events", "stimuli"):
         for column, description in columns_of(name, source.study).items():
             yield {"table": f"{name}.csv", "column": column, "description": description}
 
@@ -137,10 +167,12 @@ def codebook_rows(source: Source) -> Iterator[dict[str, Any]]:
 def columns_of(table: str, study: BuiltStudy) -> dict[str, str]:
     """The columns of an exported table in their order, each described; some come from the study."""
     about = {f"about_{field.name}": field.text for field in study.settings.survey.about}
+    client = {name: CLIENT[name] for name in study.settings.survey.record}
     factors = {f"factor_{factor['name']}": f"level of {factor.get('path', factor['name'])}" for factor in study.factors}
     return {
         "ratings": RATINGS,
-        "participants": PARTICIPANTS | about,
+        "participants": PARTICIPANTS | about | client,
+        "displays": DISPLAYS,
         "events": EVENTS,
         "stimuli": STIMULI | factors,
         "codebook": CODEBOOK,
@@ -150,6 +182,7 @@ def columns_of(table: str, study: BuiltStudy) -> dict[str, str]:
 ROWS: dict[str, Callable[[Source], Iterator[dict[str, Any]]]] = {
     "ratings": rating_rows,
     "participants": participant_rows,
+    "displays": display_rows,
     "events": event_rows,
     "stimuli": stimulus_rows,
     "codebook": codebook_rows,
@@ -164,7 +197,7 @@ def table_text(table: str, source: Source) -> Iterator[str]:
 def export_ratings(
     study_folder: Path, out: Path, *, mode: Mode = "live", database_url: str | None = None
 ) -> list[Path]:
-    """Write ratings, participants, events, stimuli and codebook (.csv) into the folder `out`; gives their paths.
+    """Write every table as CSV into the folder `out`, made if it is not there; gives their paths.
 
     Raises `BadInput` if the study is not built, the database cannot be opened, or `out` cannot be written.
     """

@@ -1,17 +1,21 @@
-"""What a participant's page holds at each step: one dict, shown as HTML or sent as JSON."""
+"""What a participant's page holds at each step: one dict, shown as HTML or sent as JSON. Its texts are translated."""
 
 import re
 from collections.abc import Collection
 from typing import Any
+from urllib.parse import quote
 
 from sqlalchemy import Connection, RowMapping
 
+from study_server import texts
+from study_server.language import Words, offered, words
 from study_server.manifest import BuiltStudy
 from study_server.pictures import picture_facts
 from study_server.sessions import unanswered
+from study_server.settings import CHECK_NAME, Question, Survey
 from study_server.tokens import External
 
-NUMBERS = ("no questions", "one question", "two questions", "three questions", "four questions", "five questions")
+PROLIFIC = "https://app.prolific.com/submissions/complete?cc={code}"
 
 
 def paragraphs(text: str) -> list[str]:
@@ -19,74 +23,162 @@ def paragraphs(text: str) -> list[str]:
     return [part.strip() for part in re.split(r"\n\s*\n", text) if part.strip()]
 
 
-def consent_page(study: BuiltStudy, mode: str, token: str, external: External | None) -> dict[str, Any]:
+def consent_page(study: BuiltStudy, mode: str, token: str, language: str, external: External | None) -> dict[str, Any]:
     """Before anything is stored."""
     survey = study.settings.survey
+    say = words(survey, language)
+    if survey.consent:
+        told = paragraphs(say(survey.consent))
+    else:
+        told = [*map(say, texts.CONSENT), say(texts.STORED[tuple(sorted(set(survey.record)))])]
     return {
-        **frame(study, mode, token, "consent"),
-        "paragraphs": paragraphs(survey.consent),
-        "contact": survey.contact,
-        "retention": survey.retention,
+        **frame(study, mode, token, "consent", language),
+        "paragraphs": told,
+        "contact": say(survey.contact),
+        "retention": say(survey.retention),
+        "retention_until": survey.retention_until.isoformat() if survey.retention_until else "",
+        "languages": list(offered(survey)),
+        "phones": survey.phones,
         "external": {} if external is None else external.as_query(),
     }
 
 
-def frame(study: BuiltStudy, mode: str, token: str, step: str) -> dict[str, Any]:
+def shut_page(study: BuiltStudy, mode: str, token: str, language: str, step: str) -> dict[str, Any]:
+    """Instead of the consent or any other page: the study is `paused` or `closed`."""
+    return frame(study, mode, token, step, language)
+
+
+def declined_page(study: BuiltStudy, mode: str, token: str, language: str, external: External | None) -> dict[str, Any]:
+    """For somebody who does not agree to take part. Nothing is stored."""
+    code = study.settings.survey.prolific.no_consent
+    return {
+        **frame(study, mode, token, "declined", language),
+        "return_url": return_url(study.settings.survey, code, external is not None),
+        "completion_code": code,
+    }
+
+
+def frame(study: BuiltStudy, mode: str, token: str, step: str, language: str) -> dict[str, Any]:
     """What every page of a participant has."""
-    return {"step": step, "title": study.settings.survey.title or study.title, "mode": mode, "here": f"/s/{token}"}
+    title = words(study.settings.survey, language)(study.settings.survey.title or study.title)
+    return {"step": step, "title": title, "mode": mode, "here": f"/s/{token}", "language": language}
 
 
 def page(connection: Connection, study: BuiltStudy, session: RowMapping) -> dict[str, Any]:
     """The page where this session stands."""
     step = str(session["step"])
     survey = study.settings.survey
-    data = {**frame(study, session["mode"], session["token"], step), "session": session["id"]}
+    say = words(survey, session["language"])
+    data = {**frame(study, session["mode"], session["token"], step, session["language"]), "session": session["id"]}
     if step == "about":
-        data["fields"] = [field.model_dump(mode="json") for field in survey.about]
+        data["fields"] = [asked_about(field.model_dump(mode="json"), say) for field in survey.about]
+    elif step == "screen":
+        data["parts"] = list(survey.screen_check)
     elif step == "instructions":
-        data["paragraphs"] = paragraphs(filled(survey.instructions, study))
+        data["paragraphs"] = instructions(study, say)
         data["practice"] = survey.practice
     elif step == "ready":
-        data["trials"] = len(study.stimuli)
+        data["trials"] = trials(study)
     elif step in ("practice", "trials"):
-        data |= trial_page(connection, study, session)
+        data |= trial_page(connection, study, session, say)
     elif step == "comments":
-        data["question"] = survey.comments
-    elif step == "done":
-        data["paragraphs"] = paragraphs(survey.thanks)
-        data["completion_code"] = session["completion_code"]
+        data["question"] = say(survey.comments)
+    elif step in ("done", "screened_out"):
+        data |= last_page(survey, session, say)
     return data
 
 
-def trial_page(connection: Connection, study: BuiltStudy, session: RowMapping) -> dict[str, Any]:
-    """The picture that is due, the questions under it, and the picture after it, to be fetched ahead."""
-    due, *later = unanswered(connection, session["id"], limit=2)
-    following = next((picture_facts(study.by_id[row["stimulus"]]) for row in later), None)
+def asked_about(field: dict[str, Any], say: Words) -> dict[str, Any]:
+    """A question about the participant. `choices` are what is stored; `labels` what is read."""
+    del field["screen_out"]  # nobody is told which answer lets them in
+    return field | {"text": say(field["text"]), "labels": [say(choice) for choice in field["choices"]]}
+
+
+def instructions(study: BuiltStudy, say: Words) -> list[str]:
+    """The study's own, or ours."""
+    own = study.settings.survey.instructions
+    told = paragraphs(say(own)) if own else [say(text) for text in texts.INSTRUCTIONS]
+    return [filled(text, study, say) for text in told]
+
+
+def last_page(survey: Survey, session: RowMapping, say: Words) -> dict[str, Any]:
+    """After the last thing asked: thanks, the code, the way back."""
+    code = session["completion_code"] if session["step"] == "done" else survey.prolific.screened_out
     return {
-        "place": due["place"],
-        "practice": due["practice"],
-        "trial": due["trial"],
-        "trials": study.settings.survey.practice if due["practice"] else len(study.stimuli),
-        "stimulus": due["stimulus"],  # simulated raters answer by it: two stimuli may be one picture
-        "picture": picture_facts(study.by_id[due["stimulus"]]),
-        "next_picture": following,
-        "questions": [question.model_dump(mode="json") for question in study.settings.question],
+        "paragraphs": paragraphs(say(survey.thanks)) if session["step"] == "done" else [],
+        "completion_code": code,
+        "return_url": return_url(survey, code, session["external_participant"] is not None),
     }
 
 
-def filled(text: str, study: BuiltStudy) -> str:
+def return_url(survey: Survey, code: str, is_external: bool) -> str:
+    """Where the last page leads: what the study says, or Prolific for who came from there, or nowhere."""
+    address = survey.return_url or (PROLIFIC if is_external and survey.prolific != type(survey.prolific)() else "")
+    return address.replace("{code}", quote(code, safe="")) if code or "{code}" not in address else ""
+
+
+def trials(study: BuiltStudy) -> int:
+    """How many pictures a participant rates, practice not counted."""
+    blocks = len(study.settings.question) if study.settings.survey.blocks == "by-question" else 1
+    return len(study.stimuli) * blocks
+
+
+def trial_page(connection: Connection, study: BuiltStudy, session: RowMapping, say: Words) -> dict[str, Any]:
+    """The picture that is due and the questions under it, and the same for the next ones of this step.
+
+    `ahead` is what the browser may show before the answers to the earlier ones are saved, and fetches beforehand.
+    """
+    limit = study.settings.survey.unsaved_ahead
+    due, *later = unanswered(connection, session["id"], limit=1 + max(limit, 1))
+    return {
+        **trial_facts(study, due, say),
+        "practice": due["practice"],
+        "trials": study.settings.survey.practice if due["practice"] else trials(study),
+        "ahead": [trial_facts(study, row, say) for row in later if row["practice"] == due["practice"]],
+        "unsaved_ahead": limit,
+        "scaled_pictures": study.settings.survey.scaled_pictures,
+    }
+
+
+def trial_facts(study: BuiltStudy, row: RowMapping, say: Words) -> dict[str, Any]:
+    """One trial: where it stands, its picture, its questions."""
+    questions = [shown(question, say) for question in study.settings.question if question.name in row["questions"]]
+    if row["check_expected"] is not None:
+        questions.append(instructed(study.settings.question[0], row["check_expected"], say))
+    return {
+        "place": row["place"],
+        "trial": row["trial"],
+        "stimulus": row["stimulus"],  # simulated raters answer by it: two stimuli may be one picture
+        "picture": picture_facts(study.by_id[row["stimulus"]]),
+        "questions": questions,
+    }
+
+
+def shown(question: Question, say: Words) -> dict[str, Any]:
+    """A question as the participant reads it."""
+    told = {"text": say(question.text), "low": say(question.low), "high": say(question.high)}
+    return {"name": question.name, "scale": question.scale, **told}
+
+
+def instructed(like: Question, expected: int, say: Words) -> dict[str, Any]:
+    """The item that asks for a certain answer, on the scale of `like`."""
+    return shown(like, say) | {"name": CHECK_NAME, "text": say(texts.CHECK).format(answer=expected)}
+
+
+def filled(text: str, study: BuiltStudy, say: Words) -> str:
     """The instructions with {questions}, {scale} (the longest one's steps) and {keys} replaced."""
-    n = len(study.settings.question)
-    count = NUMBERS[n] if n < len(NUMBERS) else f"{n} questions"
+    n = 1 if study.settings.survey.blocks == "by-question" else len(study.settings.question)
+    count = say.plural("one question", "{n} questions", n).replace("{n}", str(n))
     scales = {question.scale for question in study.settings.question}
-    return text.replace("{questions}", count).replace("{scale}", str(max(scales))).replace("{keys}", key_words(scales))
+    keys = key_words(scales, say)
+    return text.replace("{questions}", count).replace("{scale}", str(max(scales))).replace("{keys}", keys)
 
 
-def key_words(scales: Collection[int]) -> str:
+def key_words(scales: Collection[int], say: Words) -> str:
     """Which keys answer questions of these numbers of steps (static/survey.js): 1 to 9, and 0 for 10; 11 has none."""
-    words = f"1 to {min(max(scales), 9)}"
+    told = say(texts.N_("1 to {last}")).format(last=min(max(scales), 9))
     if max(scales) >= 10:
-        words += ", and 0 for 10"
+        told += say(texts.N_(", and 0 for 10"))
     if max(scales) >= 11:
-        words += " (11 has no key)"
-    return words if len(set(scales)) == 1 else f"{words}, as far as each question's scale goes"
+        told += say(texts.N_(" (11 has no key)"))
+    return told if len(set(scales)) == 1 else told + say(texts.N_(", as far as each question's scale goes"))

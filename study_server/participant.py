@@ -5,18 +5,23 @@ browser show the same step. A form that arrives for a step already left changes 
 """
 
 import time
+from collections.abc import Collection
+from typing import Any
 
 from fastapi import APIRouter, Request, Response
 from fastapi.responses import JSONResponse, RedirectResponse
 from sqlalchemy import Connection, RowMapping
 
 from study_server import answers, pages, sessions, steps
+from study_server.gates import gate
+from study_server.language import negotiated
 from study_server.site import AtSite, Fields, Site, answer, sorry
 from study_server.tokens import External, belongs_to, is_valid, make_token
 
 router = APIRouter()
 
 STRANGER = "This address does not belong to a participant of this study; please open the link you were given again."
+CHANGED = "This study has changed since you began; please open the link again."
 
 
 @router.get("/")
@@ -35,14 +40,26 @@ def here(request: Request, site: AtSite, token: str) -> Response:
         return sorry(request, 404, STRANGER)
     with site.database.reading() as connection:
         session = sessions.find(connection, token)
-        if session is None:
-            external = External.from_query(request.query_params)
-            data = pages.consent_page(site.study, site.mode, token, external)
-        elif session["study"] != site.study.identity:
-            return sorry(request, 410, "This study has changed since you began; please open the link again.")
-        else:
-            data = pages.page(connection, site.study, session)
+        if session is not None and session["study"] != site.study.identity:
+            return sorry(request, 410, CHANGED)
+        data = current_page(request, site, connection, token, session)
     return answer(request, f"{data['step']}.html", data)
+
+
+def current_page(
+    request: Request, site: Site, connection: Connection, token: str, session: RowMapping | None
+) -> dict[str, Any]:
+    """The page of this session, or the consent page; the study's gate may stand before either."""
+    standing = gate(connection, site.study.identity, site.mode)
+    if session is None:
+        language = visitor_language(request, site)
+        if standing != "open":
+            return pages.shut_page(site.study, site.mode, token, language, standing)
+        external = External.from_query(request.query_params)
+        return pages.consent_page(site.study, site.mode, token, language, external)
+    if standing == "closed" and session["step"] in sessions.UNDER_WAY:
+        return pages.shut_page(site.study, session["mode"], token, session["language"], standing)
+    return pages.page(connection, site.study, session)
 
 
 @router.post("/s/{token}/consent")
@@ -51,10 +68,40 @@ def consent(request: Request, site: AtSite, token: str, fields: Fields) -> Respo
     external = External.from_query(fields)
     if not is_valid(site.signing_key, token) or (external and not belongs_to(site.signing_key, token, external)):
         return sorry(request, 404, STRANGER)
+    language = negotiated(site.study.settings.survey, "", fields.get("language", "")) if "language" in fields else ""
+    visitor = sessions.Visitor(
+        token=token,
+        mode="simulated" if fields.get("simulated") == "yes" else site.mode,
+        external=external,
+        language=language or visitor_language(request, site),
+        client=client_facts(request, site.study.settings.survey.record),
+    )
     with site.database.writing() as connection:
-        mode = "simulated" if fields.get("simulated") == "yes" else site.mode
-        sessions.start(connection, site.study, mode, token, external, time.time())
+        if gate(connection, site.study.identity, site.mode) == "open":
+            sessions.start(connection, site.study, visitor, time.time())
     return RedirectResponse(f"/s/{token}", 303)
+
+
+@router.post("/s/{token}/declined")
+def declined(request: Request, site: AtSite, token: str, fields: Fields) -> Response:
+    """Somebody does not agree to take part: thanked, and led back to where they came from. Stores nothing."""
+    if not is_valid(site.signing_key, token):
+        return sorry(request, 404, STRANGER)
+    language = visitor_language(request, site)
+    data = pages.declined_page(site.study, site.mode, token, language, External.from_query(fields))
+    return answer(request, "declined.html", data)
+
+
+def visitor_language(request: Request, site: Site) -> str:
+    """Of somebody whose session has not begun: chosen by hand (?language=de), or by the browser."""
+    accepted = request.headers.get("accept-language", "")
+    return negotiated(site.study.settings.survey, accepted, request.query_params.get("language", ""))
+
+
+def client_facts(request: Request, asked: Collection[str]) -> dict[str, str]:
+    """Network address and browser, as far as the study asks to store them."""
+    facts = {"address": request.client.host if request.client else "", "browser": request.headers.get("user-agent", "")}
+    return {name: value[:500] for name, value in facts.items() if name in asked}
 
 
 @router.post("/s/{token}/ratings")
@@ -63,7 +110,7 @@ def ratings(request: Request, site: AtSite, token: str, sent: answers.Posted) ->
     now = time.time()
     try:
         with site.database.writing() as connection:
-            session = known(site, connection, token)
+            session = known(site, connection, token, lock=True)
             planned = answers.accepted(connection, site.study, session, sent)
             saved = answers.store(connection, planned, sent, now)
             steps.after_answers(connection, site.study, session, now)
@@ -81,14 +128,16 @@ def ask_withdraw(request: Request, site: AtSite, token: str) -> Response:
         session = sessions.find(connection, token)
     if session is None:
         return sorry(request, 404, STRANGER)
-    return answer(request, "withdraw.html", pages.frame(site.study, session["mode"], token, "withdraw"))
+    return answer(
+        request, "withdraw.html", pages.frame(site.study, session["mode"], token, "withdraw", session["language"])
+    )
 
 
 @router.post("/s/{token}/withdraw")
 def withdraw(request: Request, site: AtSite, token: str, fields: Fields) -> Response:
     """Deletes what this participant said; asked for twice, because it cannot be undone."""
     with site.database.writing() as connection:
-        session = sessions.find(connection, token)
+        session = sessions.find(connection, token, lock=True)
         if session is None:
             return sorry(request, 404, STRANGER)
         if fields.get("sure") == "yes" and session["step"] != "withdrawn":
@@ -101,7 +150,7 @@ def leave_step(request: Request, site: AtSite, token: str, step: str, fields: Fi
     """Leaves a step that asks nothing or asks by a form; a step that is not the current one stays as it is."""
     now = time.time()
     with site.database.writing() as connection:
-        session = sessions.find(connection, token)
+        session = sessions.find(connection, token, lock=True)
         if session is None or step not in steps.LEAVE:
             return sorry(request, 404, STRANGER)
         if session["step"] == step and session["study"] == site.study.identity:
@@ -109,13 +158,13 @@ def leave_step(request: Request, site: AtSite, token: str, step: str, fields: Fi
     return RedirectResponse(f"/s/{token}", 303)
 
 
-def known(site: Site, connection: Connection, token: str) -> RowMapping:
+def known(site: Site, connection: Connection, token: str, *, lock: bool = False) -> RowMapping:
     """The started session under `token`, or `Refused`."""
-    session = sessions.find(connection, token)
+    session = sessions.find(connection, token, lock=lock)
     if session is None:
         raise answers.Refused(404, STRANGER)
     if session["study"] != site.study.identity:
-        raise answers.Refused(410, "This study has changed since you began; please open the link again.")
+        raise answers.Refused(410, CHANGED)
     return session
 
 

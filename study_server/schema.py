@@ -20,7 +20,7 @@ from sqlalchemy import (
     UniqueConstraint,
 )
 
-VERSION = "1"
+VERSION = "2"
 
 tables = MetaData()
 
@@ -46,7 +46,17 @@ order_rows = Table(
     tables,
     Column("study", ForeignKey("studies.identity"), primary_key=True),
     Column("row", Integer, primary_key=True),
-    Column("stimuli", JSON, nullable=False, comment="stimulus ids in order of showing"),
+    Column("trials", JSON, nullable=False, comment="assignment.Trial as dicts, in order of showing"),
+)
+
+gates = Table(
+    "gates",
+    tables,
+    Column("id", Integer, primary_key=True, autoincrement=True),
+    Column("study", ForeignKey("studies.identity"), nullable=False, index=True),
+    Column("mode", String, nullable=False),
+    Column("at", Double, nullable=False),
+    Column("state", String, nullable=False, comment="open, paused or closed; the latest one counts, none is open"),
 )
 
 sessions = Table(
@@ -61,7 +71,7 @@ sessions = Table(
         "step",
         String,
         nullable=False,
-        comment="about, instructions, practice, ready, trials, comments, done or withdrawn",
+        comment="about, screen, instructions, practice, ready, trials, comments, done, screened_out or withdrawn",
     ),
     Column("started_at", Double, nullable=False),
     Column("seen_at", Double, nullable=False, comment="last thing the participant sent"),
@@ -70,7 +80,10 @@ sessions = Table(
     Column("external_study", String),
     Column("external_participant", String),
     Column("external_session", String),
+    Column("language", String, nullable=False, comment="en, de, es or fr"),
     Column("about", JSON, nullable=False, comment="answers about the participant"),
+    Column("screen", JSON, nullable=False, comment="what the screen check found"),
+    Column("client", JSON, nullable=False, comment="network address and browser, only if the study asks for them"),
     Column("comments", Text),
     ForeignKeyConstraint(["study", "row"], ["order_rows.study", "order_rows.row"]),
     UniqueConstraint("study", "mode", "external_study", "external_participant"),
@@ -88,14 +101,20 @@ presentations = Table(
     Column("stimulus", String, nullable=False),
     Column("stimulus_sha256", String, nullable=False, comment="the picture assigned; a rating must report the same"),
     Column("repeat_of", String),
+    Column("questions", JSON, nullable=False, comment="names of the questions asked under this picture"),
+    Column("check_expected", Integer, comment="the answer an instructed item asks for; NULL: there is none"),
+    Column("answers_expected", Integer, nullable=False, comment="how many ratings belong to this presentation"),
     Column("answered_at", Double, comment="when all its ratings were stored"),
     Column("shown_at", Double),
     Column("device_pixel_ratio", Double),
     Column("zoom", Double),
     Column("drawn_width_px", Double),
+    Column("drawn_height_px", Double),
     Column("window_width_px", Double),
     Column("window_height_px", Double),
     Column("focus_lost_ms", Double),
+    Column("gamut", String),
+    Column("scaled", Boolean, comment="whether the picture was drawn in another size than its file's"),
 )
 
 

@@ -2,24 +2,29 @@
 
 import secrets
 from collections.abc import Mapping
+from dataclasses import asdict, dataclass, field
 from typing import Any
 
 from sqlalchemy import Connection, RowMapping, and_, case, func, insert, select, update
 from sqlalchemy.sql.elements import ColumnElement
 
 from study_server import schema
-from study_server.assignment import practice_stimuli
+from study_server.adoption import design_of
 from study_server.manifest import BuiltStudy
 from study_server.tokens import External
 
 sessions = schema.sessions.c
 presentations = schema.presentations.c
 
+UNDER_WAY = ("about", "screen", "instructions", "practice", "ready", "trials", "comments")
+"""Steps of a session that are not its end."""
+
 
 def status(now: float, release_s: float) -> ColumnElement[str]:
-    """finished, active, dropped or withdrawn: the one definition that assignment, pages and exports share."""
+    """finished, active, dropped, screened-out or withdrawn: assignment, pages and exports share this definition."""
     return case(
         (sessions.step == "withdrawn", "withdrawn"),
+        (sessions.step == "screened_out", "screened-out"),
         (sessions.finished_at.is_not(None), "finished"),
         (sessions.seen_at > now - release_s, "active"),
         else_="dropped",
@@ -31,74 +36,101 @@ def release_s(study: BuiltStudy) -> float:
     return study.settings.survey.release_after_minutes * 60
 
 
-def find(connection: Connection, token: str) -> RowMapping | None:
-    """The session under this token, if it was started."""
-    found = connection.execute(select(schema.sessions).where(sessions.token == token))
+def find(connection: Connection, token: str, *, lock: bool = False) -> RowMapping | None:
+    """The session under this token, if it was started. `lock`: nobody else changes it meanwhile."""
+    query = select(schema.sessions).where(sessions.token == token)
+    found = connection.execute(query.with_for_update() if lock else query)
     return found.mappings().one_or_none()
 
 
-def start(
-    connection: Connection, study: BuiltStudy, mode: str, token: str, external: External | None, now: float
-) -> RowMapping:
-    """The session under `token`, made if it is not there: an order row reserved and every trial written down.
+@dataclass(frozen=True)
+class Visitor:
+    """Who wants to start: the secret address, how a recruiting service calls them, their language, what may be kept."""
 
-    Must run in a writing transaction: choosing the row and taking it is one step.
+    token: str
+    mode: str
+    external: External | None = None
+    language: str = "en"
+    client: Mapping[str, str] = field(default_factory=dict)
+
+
+def start(connection: Connection, study: BuiltStudy, visitor: Visitor, now: float) -> RowMapping:
+    """The session of this visitor, made if it is not there: an order row reserved and every trial written down.
+
+    Must run in a writing transaction: choosing the row and taking it is one step. The study's row is locked for it,
+    since PostgreSQL, unlike SQLite, has many writers at once.
     """
-    known = find(connection, token)
+    this = schema.studies.c.identity == study.identity
+    connection.execute(select(schema.studies.c.identity).where(this).with_for_update())
+    known = find(connection, visitor.token)
     if known is not None:
         return known
-    row, order = emptiest_row(connection, study, mode, now)
+    row, trials = emptiest_row(connection, study, visitor.mode, now)
     new = {
         "id": secrets.token_hex(8),
-        "token": token,
+        "token": visitor.token,
         "study": study.identity,
-        "mode": mode,
+        "mode": visitor.mode,
         "row": row,
-        "step": "about" if study.settings.survey.about else "instructions",
+        "step": first_step(study),
         "started_at": now,
         "seen_at": now,
+        "language": visitor.language,
         "about": {},
+        "screen": {},
+        "client": dict(visitor.client),
     }
-    if external is not None:
-        new["external_study"] = external.study
-        new["external_participant"] = external.participant
-        new["external_session"] = external.session
+    if visitor.external is not None:
+        new["external_study"] = visitor.external.study
+        new["external_participant"] = visitor.external.participant
+        new["external_session"] = visitor.external.session
     connection.execute(insert(schema.sessions).values(new))
-    connection.execute(insert(schema.presentations), planned(study, str(new["id"]), order))
+    connection.execute(insert(schema.presentations), planned(study, str(new["id"]), trials))
     record(connection, str(new["id"]), now, "started", {})
-    started = find(connection, token)
+    started = find(connection, visitor.token)
     assert started is not None
     return started
 
 
-def emptiest_row(connection: Connection, study: BuiltStudy, mode: str, now: float) -> tuple[int, list[str]]:
-    """The order row with the fewest finished and active sessions, the first of several, and its stimuli."""
+def first_step(study: BuiltStudy) -> str:
+    """Where a session begins."""
+    return "about" if study.settings.survey.about else after_about(study)
+
+
+def after_about(study: BuiltStudy) -> str:
+    """What follows the questions about the participant."""
+    return "screen" if study.settings.survey.screen_check else "instructions"
+
+
+def emptiest_row(connection: Connection, study: BuiltStudy, mode: str, now: float) -> tuple[int, list[dict[str, Any]]]:
+    """The order row with the fewest finished and active sessions, the first of several, and its trials."""
     holds = and_(
         sessions.study == schema.order_rows.c.study,
         sessions.row == schema.order_rows.c.row,
         sessions.mode == mode,
         status(now, release_s(study)).in_(("finished", "active")),
     )
-    chosen = connection.execute(
-        select(schema.order_rows.c.row, schema.order_rows.c.stimuli)
+    row = connection.execute(
+        select(schema.order_rows.c.row)
         .outerjoin(schema.sessions, holds)
         .where(schema.order_rows.c.study == study.identity)
-        .group_by(schema.order_rows.c.study, schema.order_rows.c.row)
+        .group_by(schema.order_rows.c.row)
         .order_by(func.count(sessions.id), schema.order_rows.c.row)
         .limit(1)
-    ).one()
-    return chosen.row, chosen.stimuli
+    ).scalar_one()
+    this = and_(schema.order_rows.c.study == study.identity, schema.order_rows.c.row == row)
+    return row, connection.execute(select(schema.order_rows.c.trials).where(this)).scalar_one()
 
 
-def planned(study: BuiltStudy, session: str, order: list[str]) -> list[dict[str, Any]]:
+def planned(study: BuiltStudy, session: str, trials: list[dict[str, Any]]) -> list[dict[str, Any]]:
     """The session's presentations: practice first, then the trials in their order."""
-    practice = practice_stimuli([stimulus.id for stimulus in study.stimuli], study.settings.survey.practice)
+    practice = [asdict(trial) for trial in design_of(study).practice_trials()]
     shown: dict[str, int] = {}
     plan = []
-    for place, name in enumerate([*practice, *order]):
-        stimulus = study.by_id[name]
+    for place, trial in enumerate([*practice, *trials]):
+        stimulus = study.by_id[trial["stimulus"]]
         is_practice = place < len(practice)
-        original = stimulus.repeat_of or name
+        original = stimulus.repeat_of or stimulus.id
         if not is_practice:
             shown[original] = shown.get(original, 0) + 1
         plan.append(
@@ -108,9 +140,12 @@ def planned(study: BuiltStudy, session: str, order: list[str]) -> list[dict[str,
                 "practice": is_practice,
                 "trial": place + 1 if is_practice else place + 1 - len(practice),
                 "presentation": 1 if is_practice else shown[original],
-                "stimulus": name,
+                "stimulus": stimulus.id,
                 "stimulus_sha256": stimulus.sha256,
                 "repeat_of": stimulus.repeat_of,
+                "questions": list(trial["questions"]),
+                "check_expected": trial["check"],
+                "answers_expected": len(trial["questions"]) + (trial["check"] is not None),
             }
         )
     return plan
@@ -138,12 +173,12 @@ def unanswered(connection: Connection, session: str, limit: int) -> list[RowMapp
     return list(connection.execute(query).mappings())
 
 
-def expected_and_stored(connection: Connection, session: str, questions: int) -> tuple[int, int]:
+def expected_and_stored(connection: Connection, session: str) -> tuple[int, int]:
     """How many ratings of real trials the session should have and how many are stored."""
     mine = and_(presentations.session == session, presentations.practice.is_(False))
-    trials = connection.scalar(select(func.count()).select_from(schema.presentations).where(mine))
+    expected = connection.scalar(select(func.sum(presentations.answers_expected)).where(mine))
     stored = connection.scalar(select(func.count()).select_from(schema.ratings.join(schema.presentations)).where(mine))
-    return (trials or 0) * questions, stored or 0
+    return expected or 0, stored or 0
 
 
 def withdraw(connection: Connection, session: RowMapping, now: float) -> None:
@@ -157,12 +192,12 @@ def withdraw(connection: Connection, session: RowMapping, now: float) -> None:
     for table in (schema.revisions, schema.ratings, schema.events):
         gone = connection.execute(table.delete().where(table.c.session == session["id"]))
         deleted += gone.rowcount if table is schema.ratings else 0
-    facts = ("answered_at", "shown_at", "device_pixel_ratio", "zoom", "drawn_width_px", "window_width_px",
-             "window_height_px", "focus_lost_ms")  # fmt: skip
+    facts = ("answered_at", "shown_at", "device_pixel_ratio", "zoom", "drawn_width_px", "drawn_height_px",
+             "window_width_px", "window_height_px", "focus_lost_ms", "gamut", "scaled")  # fmt: skip
     mine = presentations.session == session["id"]
     connection.execute(update(schema.presentations).where(mine).values(dict.fromkeys(facts)))
     connection.execute(insert(schema.withdrawals).values(session=session["id"], at=now, ratings_deleted=deleted))
     forgotten = dict.fromkeys(
         ("finished_at", "completion_code", "comments", "external_study", "external_participant", "external_session")
     )
-    advance(connection, session, now, step="withdrawn", about={}, **forgotten)
+    advance(connection, session, now, step="withdrawn", about={}, screen={}, client={}, **forgotten)

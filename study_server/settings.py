@@ -1,11 +1,14 @@
 """`[[question]]` and `[survey]` of study.toml: what is asked, of whom, in which order."""
 
-from collections.abc import Mapping
+import datetime
+from collections.abc import Iterator, Mapping
 from typing import Annotated, Any, Literal, Self
 
 from pydantic import AfterValidator, Field, model_validator
 
 from fakesss.problem import Strict, validated
+from study_server import texts
+from study_server.assignment import Blocks, Order
 from study_server.cells import FORMULA_STARTS
 
 Text = Annotated[str, Field(min_length=1, max_length=20_000)]
@@ -20,23 +23,17 @@ def not_a_formula(name: str) -> str:
     return name
 
 
+CHECK_NAME = "check"
+"""The `question` of an instructed item's row in the ratings."""
+
+TEXT_KEYS = ("title", "consent", "contact", "retention", "instructions", "comments", "thanks")
+"""The keys of [survey] that participants read."""
+
+Language = Literal["en", "de", "es", "fr"]
+Recorded = Literal["address", "browser"]
+ScreenPart = Literal["card", "wedge", "plates"]
+Code = Annotated[str, Field(max_length=100)]
 Name = Annotated[str, Field(min_length=1, max_length=60), AfterValidator(not_a_formula)]
-
-CONSENT = """In this study you will look at pictures of objects made by a computer and say how they look to you. \
-There are no right or wrong answers.
-
-Taking part is voluntary. You may stop at any time by closing this page, without giving a reason.
-
-We store your answers and the time they took, the size of your window and how large each picture was drawn. We store \
-neither your name nor your network address nor which browser you use."""
-
-INSTRUCTIONS = """You will see one picture at a time, with {questions} under it. Look at the picture as long as you \
-like, then say how much you agree.
-
-Please sit as you usually do in front of your screen, and leave the page at its normal size (100% zoom).
-
-You can answer with the mouse, by touch, or with the keys {keys}. When everything is answered, press Next or the \
-Enter key. Answers are saved as you go: after an interruption, open this page again and you continue where you were."""
 
 
 def refuse_twins(key: str, names: list[str]) -> None:
@@ -52,8 +49,8 @@ class Question(Strict):
     name: Name = Field(description="short name, the `question` column of the ratings")
     text: Text = Field(description="the statement the participant judges")
     scale: Annotated[int, Field(ge=2, le=11)] = Field(7, description="number of steps, 2..11")
-    low: Text = Field("completely disagree", description="what 1 means")
-    high: Text = Field("completely agree", description="what the highest step means")
+    low: Text = Field(texts.LOW, description="what 1 means")
+    high: Text = Field(texts.HIGH, description="what the highest step means")
 
 
 class AboutField(Strict):
@@ -63,54 +60,91 @@ class AboutField(Strict):
     text: Text = Field(description="the question as shown")
     choices: tuple[Text, ...] = Field((), description="one is chosen; empty: a line of free text")
     required: bool = Field(False, description="true: the page cannot be left without an answer")
+    screen_out: tuple[Text, ...] = Field((), description="choices after which the participant is thanked and sent away")
+
+    @model_validator(mode="after")
+    def known_choices(self) -> Self:
+        """Only what can be chosen can screen out."""
+        for choice in self.screen_out:
+            if choice not in self.choices:
+                raise ValueError(f'screen_out "{choice}" is none of the choices; write it as it stands there')
+        return self
 
 
 ABOUT = (
-    AboutField(
-        name="age",
-        text="How old are you?",
-        choices=("under 18", "18-24", "25-34", "35-44", "45-54", "55-64", "65 or older", "rather not say"),
-        required=True,
-    ),
-    AboutField(
-        name="background",
-        text="How much do you work with pictures (art, photography, design, computer graphics)?",
-        choices=("not at all", "as a hobby", "as a student", "as a professional"),
-        required=True,
-    ),
-    AboutField(
-        name="vision",
-        text="How is your eyesight at the screen, with glasses or lenses if you wear them?",
-        choices=("normal", "blurred or otherwise impaired", "colour vision deficiency", "rather not say"),
-        required=True,
-    ),
+    AboutField(name="age", text=texts.AGE, choices=texts.AGES, required=True),
+    AboutField(name="background", text=texts.BACKGROUND, choices=texts.BACKGROUNDS, required=True),
+    AboutField(name="vision", text=texts.VISION, choices=texts.VISIONS, required=True),
 )
+
+
+class Prolific(Strict):
+    """Completion codes agreed with Prolific. A code left empty is not asked for: that visitor is sent back without."""
+
+    completed: Code = Field("", description="every rating is stored")
+    no_consent: Code = Field("", description="the participant did not agree to take part")
+    screened_out: Code = Field("", description="an answer about the participant is among a question's `screen_out`")
+    failed_checks: Code = Field("", description="as many instructed items failed as `failed_checks` says")
 
 
 class Survey(Strict):
     """The `[survey]` table. Every key has a default, so the table may be missing."""
 
     title: str = Field("", description="what participants see as the study's name; empty: the study's own title")
-    consent: Text = Field(CONSENT, description="shown first; paragraphs are separated by an empty line")
+    language: Language = Field("en", description="the language this file's texts are written in: en, de, es or fr")
+    translations: dict[Language, dict[str, Text]] = Field(
+        {}, description="per further language, text as written here = its translation; the browser's language chooses"
+    )
+    consent: str = Field("", description="shown first, paragraphs separated by an empty line; empty: our own words")
     contact: str = Field("", description="whom participants can write to; shown under the consent text")
     retention: str = Field("", description="how long answers are kept; shown under the consent text")
+    retention_until: datetime.date | None = Field(
+        None, description="date until which answers are kept; shown under the consent text, and to you when it is past"
+    )
+    record: tuple[Recorded, ...] = Field(
+        (), description='what is stored about the visitor besides: "address", "browser"; [] nothing'
+    )
     about: tuple[AboutField, ...] = Field(ABOUT, description="what is asked about the participant; [] asks nothing")
-    instructions: Text = Field(
-        INSTRUCTIONS, description="shown before practice; {questions}, {scale}, {keys}: filled in"
+    screen_check: tuple[ScreenPart, ...] = Field(
+        ("card", "wedge"),
+        description='"card" (size), "wedge" (brightness), "plates" (colour vision); []: none',
+    )
+    instructions: str = Field(
+        "", description="shown before practice; {questions}, {scale}, {keys}: filled in; empty: our own words"
     )
     practice: Annotated[int, Field(ge=0, le=20)] = Field(1, description="number of practice trials")
-    order: Literal["latin-square", "random"] = Field("latin-square", description="how the orders are made")
-    comments: str = Field("Is there anything you would like to tell us?", description='last question; "": not asked')
-    thanks: Text = Field("Thank you! All your answers are saved.", description="shown with the completion code")
-    completion_code: str = Field("", description="the same code for everybody; empty: each gets a random one")
+    order: Order = Field("latin-square", description='how the orders are made: "latin-square" or "random"')
+    blocks: Blocks = Field(
+        "together", description='"together": all questions under one picture; "by-question": a block for each question'
+    )
+    checks: Annotated[int, Field(ge=0, le=20)] = Field(0, description='number of instructed items ("choose 2 here")')
+    failed_checks: Annotated[int, Field(ge=1, le=20)] = Field(
+        2, description="from so many failed instructed items on the code is the one for failed checks"
+    )
+    scaled_pictures: Literal["flag", "refuse"] = Field(
+        "flag", description="a picture that does not fit the window: shown smaller and flagged, or not shown"
+    )
+    phones: Literal["allow", "refuse"] = Field("allow", description="whether small touch screens may take part")
+    unsaved_ahead: Annotated[int, Field(ge=0, le=20)] = Field(
+        3, description="how many answers a participant may be ahead of what is saved, while the network is slow"
+    )
+    comments: str = Field(texts.COMMENTS, description='last question; "": not asked')
+    thanks: Text = Field(texts.THANKS, description="shown with the completion code")
+    completion_code: Code = Field("", description="the same code for everybody; empty: each gets a random one")
+    return_url: Annotated[str, Field(pattern=r"^(https?://\S+)?$")] = Field(
+        "", description="where the last page leads, {code} filled in; empty: to Prolific for who came from there"
+    )
+    prolific: Prolific = Field(Prolific(), description="separate completion codes for those who come from Prolific")
     release_after_minutes: Annotated[float, Field(gt=0, le=10_080)] = Field(
         60.0, description="a session silent for so long counts as dropped out, and its order row is given again"
     )
 
     @model_validator(mode="after")
     def distinct_names(self) -> Self:
-        """No two about-fields of one name."""
+        """No two about-fields of one name; no translation into the language that is translated from."""
         refuse_twins("about", [field.name for field in self.about])
+        if self.language in self.translations:
+            raise ValueError(f'translations.{self.language}: is the language of the texts themselves; see "language"')
         return self
 
 
@@ -122,9 +156,32 @@ class SurveySettings(Strict):
 
     @model_validator(mode="after")
     def distinct_names(self) -> Self:
-        """No two questions of one name: it is part of a rating's key."""
+        """No two questions of one name, which is part of a rating's key; none of the instructed items' name."""
         refuse_twins("question", [question.name for question in self.question])
+        if self.survey.checks and any(question.name == CHECK_NAME for question in self.question):
+            raise ValueError(f'a question is named "{CHECK_NAME}", as instructed items are; give it another name')
         return self
+
+    @model_validator(mode="after")
+    def translated(self) -> Self:
+        """Every translation holds every text of this file: better one language than two on a page."""
+        for language, known in self.survey.translations.items():
+            for key, text in self.texts():
+                if text not in known:
+                    raise ValueError(
+                        f'survey.translations.{language}: {key} is missing; add a line "{text[:60]}" = "..."'
+                    )
+        return self
+
+    def texts(self) -> Iterator[tuple[str, str]]:
+        """(key, text) of everything a participant reads that stands in this file and is none of our own words."""
+        survey = self.survey
+        found = [(key, getattr(survey, key)) for key in TEXT_KEYS]
+        for asked in self.question:
+            found += [(f"question.{asked.name}", text) for text in (asked.text, asked.low, asked.high)]
+        for field in survey.about:
+            found += [(f"about.{field.name}", text) for text in (field.text, *field.choices)]
+        yield from ((key, text) for key, text in found if text and text not in texts.OURS)
 
 
 def check_survey(study_table: Mapping[str, Any], source: str) -> SurveySettings:

@@ -13,6 +13,7 @@ from jinja2 import Environment, FileSystemLoader, StrictUndefined
 from starlette.exceptions import HTTPException
 
 from study_server.database import Database
+from study_server.language import catalogue
 from study_server.manifest import BuiltStudy
 from study_server.throttle import Throttle
 
@@ -23,6 +24,8 @@ environment = Environment(
     loader=FileSystemLoader(HERE / "templates"), autoescape=True, undefined=StrictUndefined, trim_blocks=True,
     lstrip_blocks=True,
 )  # fmt: skip
+environment.add_extension("jinja2.ext.i18n")  # {% trans %}; `answer` brings the words
+environment.policies["ext.i18n.trimmed"] = True
 environment.globals.update(mode="", session=None)  # pages outside a session
 templates = Jinja2Templates(env=environment)
 
@@ -101,10 +104,12 @@ def wants_json(request: Request) -> bool:
 
 
 def answer(request: Request, template: str, data: Mapping[str, Any], http_status: int = 200) -> Response:
-    """`data` as a page, or as JSON if that is what was asked for."""
+    """`data` as a page in its language, or as JSON if that is what was asked for."""
     if wants_json(request):
         return JSONResponse(dict(data), http_status)
-    page: Response = templates.TemplateResponse(request, template, dict(data), http_status)
+    in_words = catalogue(data.get("language", "en"))
+    context = {"language": "en", **data, "gettext": in_words.gettext, "ngettext": in_words.ngettext}
+    page: Response = templates.TemplateResponse(request, template, context, http_status)
     return page
 
 

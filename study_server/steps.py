@@ -3,10 +3,12 @@
 import secrets
 from collections.abc import Callable, Mapping
 
-from sqlalchemy import Connection, RowMapping
+from sqlalchemy import Connection, RowMapping, select
 
+from study_server.counts import failed_checks
 from study_server.manifest import BuiltStudy
-from study_server.sessions import advance, expected_and_stored, record, unanswered
+from study_server.sessions import advance, after_about, expected_and_stored, record, unanswered
+from study_server.settings import Survey
 
 CODE_LETTERS = "ABCDEFGHJKLMNPQRSTUVWXYZ23456789"
 """Without I, O, 0 and 1, which are mistaken for one another when copied by hand."""
@@ -26,7 +28,14 @@ def leave_about(connection: Connection, study: BuiltStudy, session: Session, val
         if (field.required and not value) or (value and field.choices and value not in field.choices):
             return
         told[field.name] = value
-    advance(connection, session, now, step="instructions", about=told)
+    out = any(told[field.name] in field.screen_out for field in study.settings.survey.about)
+    advance(connection, session, now, step="screened_out" if out else after_about(study), about=told)
+
+
+def leave_screen(connection: Connection, _study: BuiltStudy, session: Session, values: Values, now: float) -> None:
+    """Keeps what the screen check found."""
+    found = {name: value[:100] for name, value in values.items() if name in SCREEN_FACTS}
+    advance(connection, session, now, step="instructions", screen=found)
 
 
 def leave_instructions(connection: Connection, study: BuiltStudy, session: Session, _: Values, now: float) -> None:
@@ -44,8 +53,11 @@ def leave_comments(connection: Connection, _study: BuiltStudy, session: Session,
     advance(connection, session, now, step="done", comments=values.get("comments", "").strip()[:LONGEST_TEXT] or None)
 
 
+SCREEN_FACTS = ("px_per_mm",)
+
 LEAVE: dict[str, Callable[[Connection, BuiltStudy, Session, Values, float], None]] = {
     "about": leave_about,
+    "screen": leave_screen,
     "instructions": leave_instructions,
     "ready": leave_ready,
     "comments": leave_comments,
@@ -65,11 +77,18 @@ def after_answers(connection: Connection, study: BuiltStudy, session: Session, n
 
 def finish(connection: Connection, study: BuiltStudy, session: Session, now: float) -> None:
     """Closes the session. The ratings are counted, not assumed: no code without every expected row."""
-    expected, stored = expected_and_stored(connection, session["id"], len(study.settings.question))
+    expected, stored = expected_and_stored(connection, session["id"])
     if stored != expected:
         raise RuntimeError(f"session {session['id']}: {stored} of {expected} ratings stored, yet no trial is left")
-    code = study.settings.survey.completion_code
-    code = code or "".join(secrets.choice(CODE_LETTERS) for _ in range(CODE_LENGTH))
-    step = "comments" if study.settings.survey.comments else "done"
+    survey, checks = study.settings.survey, failed_checks()
+    failed = connection.scalar(select(checks.c.checks_failed).where(checks.c.session == session["id"])) or 0
+    code = completion_code(survey, failed >= survey.failed_checks)
+    step = "comments" if survey.comments else "done"
     advance(connection, session, now, step=step, finished_at=now, completion_code=code)
     record(connection, session["id"], now, "finished", {})
+
+
+def completion_code(survey: Survey, failed: bool) -> str:
+    """The code agreed with Prolific, or the study's own, or one drawn by lot."""
+    agreed = (survey.prolific.failed_checks if failed else "") or survey.prolific.completed or survey.completion_code
+    return agreed or "".join(secrets.choice(CODE_LETTERS) for _ in range(CODE_LENGTH))

@@ -34,6 +34,7 @@ class Participant:
         """Everything up to the first picture that counts."""
         self.consent()
         self.post("about", **ABOUT)
+        self.post("screen")
         self.post("instructions")
         while self.state["step"] == "practice":
             self.rate()

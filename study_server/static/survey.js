@@ -40,7 +40,7 @@ async function follow(state) {
   next.disabled = false;
   refreshNext();
   focusOn(0);
-  if (state.next_picture) picture(state.next_picture).catch(() => {});  // asked for again when it is due
+  for (const next of state.ahead) picture(next.picture).catch(() => {});  // asked for again when it is due
 }
 
 // The picture, however long it takes; a picture that is not exactly the right one is never shown.

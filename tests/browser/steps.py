@@ -24,6 +24,7 @@ def to_practice(page: Page, url: str) -> None:
         page.locator(f"input[name={group}]").first.focus()
         page.keyboard.press("Space")
     page.keyboard.press("Enter")
+    press_the_button(page, "screen")
     press_the_button(page, "instructions")
     answerable(page, "Practice 1 of 1")
 
@@ -39,7 +40,7 @@ def to_trials(page: Page, url: str) -> None:
 def press_the_button(page: Page, step: str) -> None:
     """Enter on a page whose button has the focus from the start."""
     page.wait_for_selector(f"body.{step}")
-    expect(page.locator("main button")).to_be_focused()
+    expect(page.locator("main button").first).to_be_focused()
     page.keyboard.press("Enter")
 
 

@@ -12,6 +12,8 @@ from playwright.sync_api import Browser, Page, Route, expect
 from steps import answerable, rate, rows, to_practice, to_trials
 from study_fixture import draw_disc
 
+from study_server.manifest import load_study
+
 pytestmark = pytest.mark.browser
 
 
@@ -28,7 +30,9 @@ def test_one_file_pixel_is_one_screen_pixel(
     screen = np.asarray(Image.open(io.BytesIO(page.screenshot())).convert("RGB"))
     left, top = (math.floor(box[side] * ratio + 0.5) for side in ("x", "y"))
     shown = screen[top : top + 200, left : left + 200].astype(int)
-    rendered = np.asarray(Image.open(study / "stimuli" / "img01.png").convert("RGB")).astype(int)
+    sha256 = page.locator("#stage img").get_attribute("data-sha256")
+    path = next(each.path for each in load_study(study).stimuli if each.sha256 == sha256)
+    rendered = np.asarray(Image.open(path).convert("RGB")).astype(int)
     assert np.abs(shown - rendered).max() == 0
     assert page.evaluate("devicePixelRatio") == ratio
     browser.close()
@@ -80,12 +84,13 @@ def test_a_picture_changed_on_the_way_is_not_shown(page: Page, url: str, study: 
 
 def to_first_picture(page: Page) -> None:
     """To the practice trial, whether or not its picture comes."""
-    page.locator("main button").click()
+    page.locator("main button").first.click()
     for group in ("age", "background", "vision"):
         page.locator(f"input[name={group}]").first.check()
-    page.locator("main button").click()
-    page.wait_for_selector("body.instructions")
-    page.locator("main button").click()
+    for step in ("screen", "instructions"):
+        page.locator("main button").first.click()
+        page.wait_for_selector(f"body.{step}")
+    page.locator("main button").first.click()
     page.wait_for_selector("body.practice")
 
 

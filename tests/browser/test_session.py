@@ -104,6 +104,7 @@ def test_pages_that_need_javascript_say_so_without_it(url: str) -> None:
     person = Participant(url)
     person.consent()
     person.post("about", **ABOUT)
+    person.post("screen")
     for step in ("instructions", "practice"):
         assert person.state["step"] == step
         page = person.client.get(person.here, headers={"Accept": "text/html"}).text

@@ -51,11 +51,11 @@ def test_unanswered_pictures_are_empty_ratings(url: str, study: Path, tmp_path: 
     assert frame.trial.tolist() == [1, 1, 2, 2, 3, 3]
 
 
-def test_five_tables_and_a_codebook_that_describes_them_all(url: str, study: Path, tmp_path: Path) -> None:
+def test_six_tables_with_a_codebook_that_describes_them_all(url: str, study: Path, tmp_path: Path) -> None:
     Participant(url).to_trials().to_end()
     paths = export_ratings(study, tmp_path / "out")
     assert [path.name for path in paths] == [
-        "ratings.csv", "participants.csv", "events.csv", "stimuli.csv", "codebook.csv"
+        "ratings.csv", "participants.csv", "displays.csv", "events.csv", "stimuli.csv", "codebook.csv"
     ]  # fmt: skip
     described = pd.read_csv(tmp_path / "out" / "codebook.csv")
     assert described.description.str.len().min() > 5

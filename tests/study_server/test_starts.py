@@ -59,7 +59,7 @@ def test_a_row_is_given_again_after_silence_and_kept_by_who_finished(study: Path
     def start(at: float) -> int:
         with site.database.writing() as connection:
             token = make_token(site.signing_key, None)
-            return int(sessions.start(connection, site.study, "live", token, None, at)["row"])
+            return int(sessions.start(connection, site.study, sessions.Visitor(token, "live"), at)["row"])
 
     first = [start(now) for _ in range(6)]
     assert sorted(first) == list(range(6))

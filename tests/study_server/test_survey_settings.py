@@ -6,8 +6,9 @@ import pytest
 from study_fixture import write_study
 
 from fakesss.problem import BadInput
+from study_server.language import words as words_of
 from study_server.manifest import load_study
-from study_server.pages import filled
+from study_server.pages import instructions
 from study_server.settings import check_survey
 
 QUESTION = {"name": "translucent", "text": "The object looks translucent."}
@@ -56,7 +57,7 @@ def test_errors_name_the_key_and_the_mend(tables: dict[str, object], sentence: s
 def test_the_keys_in_the_instructions_exist(tmp_path: Path, scales: list[int], words: str) -> None:
     questions = [{**QUESTION, "name": f"q{number}", "scale": scale} for number, scale in enumerate(scales)]
     study = load_study(write_study(tmp_path, question=questions))
-    text = filled(study.settings.survey.instructions, study)
+    text = " ".join(instructions(study, words_of(study.settings.survey, "en")))
     assert f"or with the keys {words}. When" in text
     assert "{" not in text
 

@@ -138,8 +138,10 @@ def test_a_form_sent_twice_or_late_changes_nothing(url: str) -> None:
     person = Participant(url).consent()
     person.post("about", **ABOUT)
     person.post("about", **ABOUT)
-    assert person.state["step"] == "instructions"
+    assert person.state["step"] == "screen"
     person.post("consent")
+    person.post("screen")
+    assert person.state["step"] == "instructions"
     person.post("instructions")
     person.post("instructions")
     assert person.state["step"] == "practice"
@@ -149,7 +151,7 @@ def test_about_needs_its_required_fields_and_known_choices(url: str) -> None:
     person = Participant(url).consent()
     assert person.post("about", age="25-34")["step"] == "about"
     assert person.post("about", **{**ABOUT, "age": "<script>"})["step"] == "about"
-    assert person.post("about", **ABOUT)["step"] == "instructions"
+    assert person.post("about", **ABOUT)["step"] == "screen"
 
 
 def test_first_hits_of_one_person_may_race(url: str, exported: Exported) -> None:
@@ -235,7 +237,7 @@ def test_who_withdrew_is_forgotten_but_cannot_begin_again(url: str, study: Path,
 
 
 def test_nothing_asked_but_the_pictures(tmp_path: Path) -> None:
-    survey = {"about": [], "practice": 0, "comments": "", "completion_code": "THANKS"}
+    survey = {"about": [], "screen_check": [], "practice": 0, "comments": "", "completion_code": "THANKS"}
     with served(write_study(tmp_path, survey=survey)) as url:
         person = Participant(url).consent()
         person.post("instructions")
