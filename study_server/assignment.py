@@ -201,14 +201,3 @@ def with_checks(row: Sequence[Trial], n: int, steps: int, random: Random) -> lis
         asked = random.choice([step for step in range(1, steps + 1) if 2 * step != steps + 1 and step != asked])
         checked[place] = replace(checked[place], check=asked)
     return checked
-
-
-def order_rows(stimuli: Sequence[str], order: Order, seed: int) -> list[list[str]]:
-    """The orders without repeats and checks, as they were stored before there was a `Design`."""
-    design = Design(tuple(stimuli), {}, ("",), 2, order=order, seed=seed)
-    return [[trial.stimulus for trial in row] for row in design.rows()]
-
-
-def practice_stimuli(stimuli: Sequence[str], n: int) -> list[str]:
-    """The pictures of `Design.practice_trials`."""
-    return [trial.stimulus for trial in Design(tuple(stimuli), {}, ("",), 2, practice=n).practice_trials()]

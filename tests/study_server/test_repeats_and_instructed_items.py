@@ -7,7 +7,7 @@ from itertools import combinations, groupby, pairwise, permutations
 from random import Random
 
 import pytest
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 
 from study_server.assignment import Design, Trial, most_checks, with_checks
@@ -30,7 +30,7 @@ def designs(draw: st.DrawFn) -> Design:
     stimuli = names(draw(st.integers(1, 12)))
     repeated = draw(st.lists(st.sampled_from(stimuli), unique=True))
     questions = tuple(f"q{i}" for i in range(draw(st.integers(1, 3))))
-    order = draw(st.sampled_from(["latin-square", "latin-square", "latin-square", "random"]))
+    order = draw(st.sampled_from(["latin-square"] * 5 + ["random"]))
     blocks = draw(st.sampled_from(["together", "by-question"]))
     design = Design(stimuli, again(repeated), questions, draw(st.integers(2, 11)), order, blocks, seed=draw(seeds))
     return replace(design, checks=draw(st.integers(0, most_checks(design.trials))))
@@ -154,7 +154,6 @@ def test_checks_differ_between_rows_and_no_place_or_answer_is_favoured(steps: in
     assert len({tuple(row) for row in rows}) > 12
 
 
-@settings(max_examples=40)
 @given(designs())
 def test_rows_depend_on_nothing_but_the_design_and_can_be_stored_as_json(design: Design) -> None:
     backwards = replace(design, repeats=dict(reversed(design.repeats.items())))
