@@ -2,7 +2,6 @@
 
 import contextlib
 import errno
-import os
 import shutil
 import subprocess
 from collections.abc import Iterator
@@ -13,6 +12,12 @@ ALLOW = (
     "(sysctl -w user.max_user_namespaces=10000 kernel.apparmor_restrict_unprivileged_userns=0; in a container "
     "--cap-add SYS_ADMIN --security-opt seccomp=unconfined --security-opt apparmor=unconfined)"
 )
+WAYS = (
+    ((), ()),  # the right of root
+    (("--map-root-user",), ("--user", "--preserve-credentials")),  # everybody's, in a user namespace
+)
+"""What unshare and nsenter are told besides --mount."""
+
 HOLD = 'mount -t tmpfs -o size="$2",mode=755 fakesss "$1" && echo mounted && read -r _'
 """Mounts, says so, and holds the namespace until its standard input is closed."""
 
@@ -25,18 +30,18 @@ class SmallDisk:
 
     def __init__(self, path: Path, size: int) -> None:
         self.path = path
-        root = os.geteuid() == 0
-        unshare = ["unshare", "--mount", *([] if root else ["--map-root-user"])]
-        self.holder = subprocess.Popen(
-            [*unshare, "sh", "-c", HOLD, "sh", str(path), str(size)],
-            stdin=subprocess.PIPE, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True,
-        )  # fmt: skip
-        assert self.holder.stdout is not None
-        if self.holder.stdout.readline() != "mounted\n":
+        for unshare, enter in WAYS:
+            self.holder = subprocess.Popen(
+                ["unshare", "--mount", *unshare, "sh", "-c", HOLD, "sh", str(path), str(size)],
+                stdin=subprocess.PIPE, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True,
+            )  # fmt: skip
+            assert self.holder.stdout is not None
+            if self.holder.stdout.readline() == "mounted\n":
+                break
             reason = self.holder.communicate()[1].partition("\n")[0]
+        else:
             raise AssertionError(ALLOW.format(reason=reason))
-        enter = ["--mount", *([] if root else ["--user", "--preserve-credentials"])]
-        self.prefix = ["nsenter", "--target", str(self.holder.pid), *enter]
+        self.prefix = ["nsenter", "--target", str(self.holder.pid), "--mount", *enter]
         self.seen = Path(f"/proc/{self.holder.pid}/root{path}")
         self.filler = self.seen / "filler"
 
