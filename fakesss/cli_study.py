@@ -88,6 +88,8 @@ def serving(command: Callable[..., None]) -> Callable[..., None]:
         click.option("--port", default=8000, show_default=True, type=click.IntRange(0, 65535), help="0: any free."),
         click.option("--database", metavar="URL", help="Where ratings go (default: STUDY/ratings.sqlite)."),
         click.option("--pilot", is_flag=True, help="A try-out: kept apart from live answers everywhere."),
+        click.option("--workers", default=1, show_default=True, type=click.IntRange(1), help="Processes (PostgreSQL)."),
+        click.option("--proxy", metavar="ADDRESS[,...]", default="", help="Believe X-Forwarded-* from there only."),
     ):
         command = option(command)
     return command
@@ -96,27 +98,27 @@ def serving(command: Callable[..., None]) -> Callable[..., None]:
 @commands.command()
 @STUDY
 @serving
-def serve(study: Path, host: str, port: int, database: str | None, pilot: bool) -> None:
+def serve(study: Path, **options: Any) -> None:
     """Show the survey of STUDY to browsers and record their ratings.
 
     Example: fakesss serve my-study --port 8080
     """
-    serve_study(study, host, port, database, pilot)
+    serve_study(study, **options)
 
 
 @commands.command()
 @STUDY
 @serving
-def run(study: Path, host: str, port: int, database: str | None, pilot: bool) -> None:
+def run(study: Path, **options: Any) -> None:
     """Build STUDY, then serve it.
 
     Example: fakesss run my-study
     """
     build_study(study)
-    serve_study(study, host, port, database, pilot)
+    serve_study(study, **options)
 
 
-def serve_study(study: Path, host: str, port: int, database: str | None, pilot: bool) -> None:
+def serve_study(study: Path, host: str, port: int, database: str | None, pilot: bool, workers: int, proxy: str) -> None:
     """The survey with the report behind /admin/report, until interrupted."""
     from analysis.script import script_source
     from fakesss.cli_analysis import report_folder
@@ -125,7 +127,15 @@ def serve_study(study: Path, host: str, port: int, database: str | None, pilot: 
     mode: Mode = "pilot" if pilot else "live"
     make_report = partial(report_folder, study, database, mode)
     serve_until_interrupted(
-        study, host, port, database_url=database, mode=mode, make_report=make_report, report_script=script_source()
+        study,
+        host,
+        port,
+        database_url=database,
+        mode=mode,
+        make_report=make_report,
+        report_script=script_source(),
+        workers=workers,
+        proxies=[address.strip() for address in proxy.split(",") if address.strip()],
     )
 
 

@@ -12,7 +12,7 @@ from contextlib import contextmanager
 from pathlib import Path
 from typing import Any, TypeVar
 
-from sqlalchemy import Connection, Table, func, select, update
+from sqlalchemy import Connection, Engine, Table, func, select, update
 from sqlalchemy.dialects import postgresql, sqlite
 from sqlalchemy.engine import make_url
 from sqlalchemy.exc import ArgumentError, DatabaseError, NoSuchModuleError, TimeoutError
@@ -38,7 +38,8 @@ class Database:
         self.writer = GroupCommit(self.engine) if self.is_sqlite else Retries(self.engine, AT_ONCE)
         snapshots = {} if self.is_sqlite else {"isolation_level": "REPEATABLE READ", "postgresql_readonly": True}
         self.reader = self.engine.execution_options(**snapshots)
-        weakref.finalize(self, self.writer.close)  # what is waiting is written before the process ends
+        # what is waiting is written before the process ends, or before nobody knows this any more
+        weakref.finalize(self, finish, self.writer, self.engine)
 
     @contextmanager
     def reading(self) -> Iterator[Connection]:
@@ -66,8 +67,13 @@ class Database:
 
     def close(self) -> None:
         """What is waiting is written, and the connections closed; a use after that opens others."""
-        self.writer.close()
-        self.engine.dispose()
+        finish(self.writer, self.engine)
+
+
+def finish(writer: GroupCommit | Retries, engine: Engine) -> None:
+    """Write what is waiting, then close the connections."""
+    writer.close()
+    engine.dispose()
 
 
 def default_url(folder: Path) -> str:

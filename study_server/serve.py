@@ -6,15 +6,24 @@ import socket
 import sys
 import threading
 import time
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Sequence
 from pathlib import Path
+from typing import Any
 
 import uvicorn
 from fastapi import FastAPI
 
 from fakesss.problem import BadInput
+from study_server.announcement import announcement
 from study_server.app import create_app
 from study_server.site import Mode
+from study_server.workers import run_workers
+
+FINISH_S = 20
+"""How long requests that are under way are waited for at the end: a body that never comes must not keep the server."""
+
+START_S = 60
+"""How long a worker may take to start before it is given up and replaced."""
 
 
 def serve(
@@ -26,17 +35,35 @@ def serve(
     mode: Mode = "live",
     make_report: Callable[[], Path] | None = None,
     report_script: str = "'none'",
+    workers: int = 1,
+    proxies: Sequence[str] = (),
 ) -> None:
     """Serve the built study until interrupted; prints its addresses on standard error. Port 0: any free one.
 
-    Raises `BadInput` if the study or its database cannot be used, or the port is taken.
+    `workers`: processes that share the work, with PostgreSQL only. `proxies`: addresses or networks of the reverse
+    proxies whose X-Forwarded-For and -Proto are believed. Raises `BadInput` if the study or its database cannot be
+    used, or the port is taken.
     """
-    app = create_app(
-        study_folder, database_url=database_url, mode=mode, make_report=make_report, report_script=report_script
-    )
+    arguments: dict[str, Any] = {
+        "study_folder": study_folder,
+        "database_url": database_url,
+        "mode": mode,
+        "make_report": make_report,
+        "report_script": report_script,
+    }
+    settings = uvicorn_settings(checked_proxies(proxies))
+    app = create_app(**arguments)
+    database = app.state.site.database
+    if workers > 1 and database.is_sqlite:
+        raise BadInput(f"--workers {workers}: SQLite has one writer; give a PostgreSQL database with --database")
     with listening(host, port) as listener:
-        announce(app, host, address_of(listener))
-        uvicorn.Server(configuration(app)).run(sockets=[listener])
+        announce(app, host, address_of(listener), proxies=proxies, workers=workers)
+        if workers > 1:
+            database.close()
+            run_workers(listener, workers, settings, **arguments)
+        else:
+            uvicorn.Server(uvicorn.Config(app, **settings)).run(sockets=[listener])
+            database.close()
 
 
 @contextlib.contextmanager
@@ -61,7 +88,7 @@ def served(
 def running(app: FastAPI, port: int = 0) -> Iterator[str]:
     """`app` on a port of this machine, in a thread for as long as the block runs; gives its address."""
     with listening("127.0.0.1", port) as listener:
-        server = uvicorn.Server(configuration(app))
+        server = uvicorn.Server(uvicorn.Config(app, **uvicorn_settings()))
         thread = threading.Thread(target=server.run, kwargs={"sockets": [listener]})
         thread.start()
         try:
@@ -71,14 +98,31 @@ def running(app: FastAPI, port: int = 0) -> Iterator[str]:
         finally:
             server.should_exit = True
             thread.join()
-            app.state.site.database.engine.dispose()
+            app.state.site.database.close()
 
 
-def configuration(app: FastAPI) -> uvicorn.Config:
-    """No access log: addresses hold the participants' tokens. No forwarded headers: no proxy is known to be ours."""
-    return uvicorn.Config(
-        app, access_log=False, log_level="warning", proxy_headers=False, server_header=False, lifespan="off"
-    )
+def uvicorn_settings(proxies: Sequence[str] = ()) -> dict[str, Any]:
+    """No access log: addresses hold the participants' tokens. Forwarded headers only from `proxies`."""
+    return {
+        "access_log": False,
+        "log_level": "warning",
+        "proxy_headers": bool(proxies),
+        "forwarded_allow_ips": list(proxies),
+        "server_header": False,
+        "lifespan": "off",
+        "timeout_graceful_shutdown": FINISH_S,
+        "timeout_worker_healthcheck": START_S,
+    }
+
+
+def checked_proxies(proxies: Sequence[str]) -> Sequence[str]:
+    """`BadInput` unless each is an address or a network: of everybody's word one must not believe any."""
+    for proxy in proxies:
+        try:
+            ipaddress.ip_network(proxy)
+        except ValueError as error:
+            raise BadInput(f"--proxy {proxy}: {error}; give addresses such as 127.0.0.1 or 10.0.0.0/24") from None
+    return proxies
 
 
 @contextlib.contextmanager
@@ -104,18 +148,10 @@ def address_of(listener: socket.socket) -> str:
     return f"http://{host}:{port}"
 
 
-def announce(app: FastAPI, host: str, url: str) -> None:
-    """Where everything is, and a warning if the answers will travel unencrypted."""
-    site = app.state.site
-    lines = [
-        f"{site.study.title} ({site.mode})",
-        f"  participants  {url}/",
-        f"  admin         {url}/admin   secret: {site.admin_secret}",
-        f"  report        {url}/admin/report/",
-    ]
-    if not is_loopback(host):
-        lines.append("  Warning: plain HTTP on a network; put an HTTPS proxy before it for people outside this room.")
-    print("\n".join(lines), file=sys.stderr, flush=True)
+def announce(app: FastAPI, host: str, url: str, *, proxies: Sequence[str] = (), workers: int = 1) -> None:
+    """Where everything is and what is trusted, on standard error."""
+    words = announcement(app.state.site, url, proxies, workers, is_local=is_loopback(host))
+    print(words, file=sys.stderr, flush=True)
 
 
 def is_loopback(host: str) -> bool:

@@ -1,0 +1,50 @@
+"""What `serve` says at its start: where everything is, and whom and what it trusts."""
+
+import os
+from collections.abc import Sequence
+
+from sqlalchemy import text
+
+from study_server.app import SECRET_VARIABLE
+from study_server.database import Database
+from study_server.site import Site
+
+
+def announcement(site: Site, url: str, proxies: Sequence[str], workers: int, *, is_local: bool) -> str:
+    """The lines, warnings last. `is_local`: only this machine can connect.
+
+    A secret from the environment is not repeated: what is printed ends in logs.
+    """
+    from_environment = bool(os.environ.get(SECRET_VARIABLE))
+    secret = f"the one in {SECRET_VARIABLE}" if from_environment else f"{site.admin_secret} (kept in the database)"
+    lines = [
+        f"{site.study.title} ({site.mode})",
+        f"  participants  {url}/",
+        f"  admin         {url}/admin   secret: {secret}",
+        f"  report        {url}/admin/report/",
+        f"  database      {site.database.engine.url.render_as_string(hide_password=True)}",
+        f"  processes     {workers}",
+        f"  proxies       {believed(proxies)}",
+    ]
+    return "\n".join([*lines, *warnings(site.database, is_local, bool(proxies))])
+
+
+def believed(proxies: Sequence[str]) -> str:
+    """Whose word about addresses and encryption is taken."""
+    if not proxies:
+        return "none: X-Forwarded-For and X-Forwarded-Proto are not believed (--proxy)"
+    return f"X-Forwarded-For and X-Forwarded-Proto are believed from {', '.join(proxies)}"
+
+
+def warnings(database: Database, is_local: bool, has_proxies: bool) -> list[str]:
+    """What could go wrong with these settings."""
+    told = []
+    if not is_local and not has_proxies:
+        told.append("Warning: plain HTTP on a network; put an HTTPS proxy before it for people outside this room.")
+    if not is_local and has_proxies:
+        told.append("Warning: plain HTTP on a network; let only the proxy reach this port.")
+    if not database.is_sqlite:
+        with database.reading() as connection:
+            if connection.scalar(text("SELECT current_setting('fsync')")) == "off":
+                told.append("Warning: this PostgreSQL has fsync = off: a power cut can lose acknowledged answers.")
+    return [f"  {line}" for line in told]
