@@ -30,7 +30,7 @@ class SmallDisk:
 
     def __init__(self, path: Path, size: int) -> None:
         self.path = path
-        for unshare, enter in WAYS:
+        for unshare, enter in WAYS:  # noqa: B007 - the way that worked is the one to enter by
             self.holder = subprocess.Popen(
                 ["unshare", "--mount", *unshare, "sh", "-c", HOLD, "sh", str(path), str(size)],
                 stdin=subprocess.PIPE, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True,
@@ -41,7 +41,7 @@ class SmallDisk:
             reason = self.holder.communicate()[1].partition("\n")[0]
         else:
             raise AssertionError(ALLOW.format(reason=reason))
-        self.prefix = ["nsenter", "--target", str(self.holder.pid), "--mount", *enter]
+        self.prefix = ["nsenter", "--target", str(self.holder.pid), "--mount", "--root", *enter]
         self.seen = Path(f"/proc/{self.holder.pid}/root{path}")
         self.filler = self.seen / "filler"
 
