@@ -103,15 +103,13 @@ def matched(allowed: Mapping[str, Sequence[int]]) -> dict[int, str] | None:
 
 
 def at_the_ends(row: Sequence[str], repeats: Mapping[str, str]) -> list[str]:
-    """`row` between repeats before and after it: the placement that always keeps `least_between`.
+    """`row` with the repeats of its second half before it and those of its first half after it, in its order.
 
-    Let k pictures be in the row and r <= k of them be repeated, so that T = k + r. If 2r > k, all repeats follow the
-    row in its order: behind the i-th repeated picture (i = 1 .. r) stand at least r - i others that are repeated, and
-    before its repeat i - 1 repeats, so at least r - 1 trials lie between, and T // 3 <= r - 1 because T < 3r.
-    If 2r <= k, repeats of the first half follow the row, those of the second half come before it: at least k // 2
-    trials lie between, and T // 3 <= (k + k // 2) // 3 <= k // 2.
+    Always far enough. Let k pictures be in the row and r <= k of them be repeated, so that a block has T = k + r
+    trials. Between the showings of a picture lie all from there to the far end of the row, at least k // 2; and one
+    showing of each of the r - 1 other repeated pictures. If 2r <= k, T // 3 <= k // 2; otherwise T < 3r, so that
+    T // 3 <= r - 1.
     """
     again = {original: repeat for repeat, original in repeats.items()}
-    early = row if 2 * len(repeats) > len(row) else row[: (len(row) + 1) // 2]
-    late = row[len(early) :]
-    return [*(again[p] for p in late if p in again), *row, *(again[p] for p in early if p in again)]
+    half = (len(row) + 1) // 2
+    return [*(again[p] for p in row[half:] if p in again), *row, *(again[p] for p in row[:half] if p in again)]

@@ -82,7 +82,7 @@ class World:
         """Places of each row as the database has them."""
         status = sessions.status(now, sessions.release_s(self.site.study))
         held = select(sessions.sessions.row, func.count()).where(status.in_(("finished", "active")))
-        found = dict(list(connection.execute(held.group_by(sessions.sessions.row))))
+        found = dict(connection.execute(held.group_by(sessions.sessions.row)).all())
         return [found.get(row, 0) for row in range(len(self.places))]
 
     def hear(self, token: str, now: float, *, finished: bool = False) -> None:
