@@ -22,6 +22,7 @@ from study_server import schema
 from study_server.engines import AT_ONCE, connect
 from study_server.group_commit import GroupCommit
 from study_server.retries import Retries
+from study_server.upgrades import upgrade
 
 T = TypeVar("T")
 
@@ -82,9 +83,9 @@ def default_url(folder: Path) -> str:
 
 
 def open_database(url: str) -> Database:
-    """The database at `url` with all tables in place.
+    """The database at `url` with all tables in place; one that an earlier release wrote is upgraded.
 
-    Raises `BadInput` if it cannot be opened or written, or belongs to another version of this program.
+    Raises `BadInput` if it cannot be opened or written, or belongs to a later version of this program.
     """
     shown = shown_url(url)
     try:
@@ -92,7 +93,7 @@ def open_database(url: str) -> Database:
         with database.writing() as connection:
             take_turns(connection)
             schema.tables.create_all(connection)
-            version = remembered(connection, "schema_version", lambda: schema.VERSION)
+            version = upgrade(connection, remembered(connection, "schema_version", lambda: schema.VERSION))
     except DatabaseError as error:
         raise BadInput(f"{shown}: cannot be opened for writing ({reason(error)}); check it and its rights") from None
     except (ArgumentError, NoSuchModuleError, ImportError) as error:
