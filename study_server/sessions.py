@@ -103,7 +103,13 @@ def after_about(study: BuiltStudy) -> str:
 
 
 def emptiest_row(connection: Connection, study: BuiltStudy, mode: str, now: float) -> tuple[int, list[dict[str, Any]]]:
-    """The order row with the fewest finished and active sessions, the first of several, and its trials."""
+    """The order row with the fewest finished and active sessions, the first of several, and its trials.
+
+    So while nobody leaves, max - min over the rows is at most 1 at any moment. Who falls silent or withdraws opens a
+    hole, which the next arrivals fill first; who comes back takes a place in the row they had, which may put it ahead
+    until as many have started as the others lack. Finishing changes nothing: when nobody is under way any more, the
+    finishers are as even as that (tests/study_server/test_two_thousand_arrivals.py states it exactly).
+    """
     holds = and_(
         sessions.study == schema.order_rows.c.study,
         sessions.row == schema.order_rows.c.row,
