@@ -11,6 +11,7 @@ from study_server import schema
 from study_server.manifest import BuiltStudy
 from study_server.sessions import record, unanswered
 from study_server.settings import CHECK_NAME
+from study_server.texts import N_
 
 DAY_MS = 86_400_000.0
 Milliseconds = Annotated[float, Field(ge=0, le=30 * DAY_MS)]
@@ -54,11 +55,13 @@ class Posted(Strict):
 
 
 class Refused(Exception):
-    """Answers that cannot be stored: HTTP status and one sentence for the participant."""
+    """Answers that cannot be stored: HTTP status and one sentence for the participant, with what fills its {blanks}."""
 
-    def __init__(self, http_status: int, sentence: str) -> None:
-        super().__init__(sentence)
+    def __init__(self, http_status: int, sentence: str, **blanks: object) -> None:
+        super().__init__(sentence.format(**blanks))
         self.http_status = http_status
+        self.sentence = sentence
+        self.blanks = blanks
 
 
 def accepted(connection: Connection, study: BuiltStudy, session: RowMapping, sent: Posted) -> RowMapping:
@@ -69,19 +72,21 @@ def accepted(connection: Connection, study: BuiltStudy, session: RowMapping, sen
     at = select(schema.presentations).filter_by(session=session["id"], place=sent.place)
     planned = connection.execute(at).mappings().one_or_none()
     if session["step"] == "withdrawn":
-        raise Refused(410, "You have withdrawn from this study; nothing is stored any more.")
+        raise Refused(410, N_("You have withdrawn from this study; nothing is stored any more."))
     if planned is None:
-        raise Refused(404, "There is no such picture in this session.")
+        raise Refused(404, N_("There is no such picture in this session."))
     if planned["answered_at"] is None and not is_due(connection, session, planned):
-        raise Refused(409, "Another picture comes first.")
+        raise Refused(409, N_("Another picture comes first."))
     if planned["stimulus_sha256"] != sent.stimulus_sha256:
-        raise Refused(409, "The picture that was shown is not the one that belongs here; the answer was not stored.")
+        raise Refused(
+            409, N_("The picture that was shown is not the one that belongs here; the answer was not stored.")
+        )
     scales = scales_of(study, planned)
     if sorted(answer.question for answer in sent.answers) != sorted(scales):
-        raise Refused(422, "Every question needs exactly one answer.")
+        raise Refused(422, N_("Every question needs exactly one answer."))
     for answer in sent.answers:
         if not 1 <= answer.rating <= scales[answer.question]:
-            raise Refused(422, f"An answer must be between 1 and {scales[answer.question]}.")
+            raise Refused(422, N_("An answer must be between 1 and {scale}."), scale=scales[answer.question])
     return planned
 
 

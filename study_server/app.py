@@ -19,6 +19,7 @@ from study_server.adoption import adopt_study
 from study_server.database import Database, default_url, is_writable, open_database, reason, secret, shown_url
 from study_server.manifest import load_study, study_changed
 from study_server.site import HERE, AtSite, Mode, Reporter, Site, sorry
+from study_server.texts import N_
 from study_server.web_safety import WebSafety
 
 log = logging.getLogger(__name__)
@@ -102,7 +103,7 @@ def health(site: AtSite) -> Response:
 def not_saved(request: Request, error: Exception) -> Response:
     """The database failed: nothing was stored, and the browser is to try again."""
     log.error("the database failed: %s", reason(error) if isinstance(error, DatabaseError) else error)
-    return sorry(request, 503, "This could not be saved just now; please try again in a moment.")
+    return sorry(request, 503, N_("This could not be saved just now; please try again in a moment."))
 
 
 def not_understood(request: Request, error: Exception) -> Response:
@@ -116,4 +117,4 @@ def not_understood(request: Request, error: Exception) -> Response:
 def no_page(request: Request, error: Exception) -> Response:
     """No such address, or not with this method."""
     assert isinstance(error, HTTPException)
-    return sorry(request, error.status_code, "There is no such page." if error.status_code == 404 else error.detail)
+    return sorry(request, error.status_code, N_("There is no such page.") if error.status_code == 404 else error.detail)

@@ -14,14 +14,14 @@ from sqlalchemy import Connection, RowMapping
 
 from study_server import answers, pages, sessions, steps
 from study_server.gates import gate
-from study_server.language import negotiated
-from study_server.site import AtSite, Fields, Site, answer, sorry
+from study_server.site import AtSite, Fields, Site, answer, site_of, sorry, told, visitor_language
+from study_server.texts import N_
 from study_server.tokens import External, belongs_to, is_valid, make_token
 
 router = APIRouter()
 
-STRANGER = "This address does not belong to a participant of this study; please open the link you were given again."
-CHANGED = "This study has changed since you began; please open the link again."
+STRANGER = N_("This address does not belong to a participant of this study; please open the link you were given again.")
+CHANGED = N_("This study has changed since you began; please open the link again.")
 
 
 @router.get("/")
@@ -29,7 +29,7 @@ def link(request: Request, site: AtSite) -> Response:
     """The link that is sent out: gives the visitor an address of their own. Stores nothing."""
     external = External.from_query(request.query_params)
     token = make_token(site.signing_key, external)
-    query = f"?{request.url.query}" if external else ""
+    query = f"?{request.url.query}" if request.url.query else ""  # ?language=de
     return RedirectResponse(f"/s/{token}{query}", 303)
 
 
@@ -39,7 +39,7 @@ def here(request: Request, site: AtSite, token: str) -> Response:
     if not is_valid(site.signing_key, token):
         return sorry(request, 404, STRANGER)
     with site.database.reading() as connection:
-        session = sessions.find(connection, token)
+        session = find(request, connection, token)
         if session is not None and session["study"] != site.study.identity:
             return sorry(request, 410, CHANGED)
         data = current_page(request, site, connection, token, session)
@@ -52,7 +52,7 @@ def current_page(
     """The page of this session, or the consent page; the study's gate may stand before either."""
     standing = gate(connection, site.study.identity, site.mode)
     if session is None:
-        language = visitor_language(request, site)
+        language = visitor_language(request)
         if standing != "open":
             return pages.shut_page(site.study, site.mode, token, language, standing)
         external = External.from_query(request.query_params)
@@ -68,12 +68,11 @@ def consent(request: Request, site: AtSite, token: str, fields: Fields) -> Respo
     external = External.from_query(fields)
     if not is_valid(site.signing_key, token) or (external and not belongs_to(site.signing_key, token, external)):
         return sorry(request, 404, STRANGER)
-    language = negotiated(site.study.settings.survey, "", fields.get("language", "")) if "language" in fields else ""
     visitor = sessions.Visitor(
         token=token,
         mode="simulated" if fields.get("simulated") == "yes" else site.mode,
         external=external,
-        language=language or visitor_language(request, site),
+        language=visitor_language(request, fields.get("language", "")),
         client=client_facts(request, site.study.settings.survey.record),
     )
     with site.database.writing() as connection:
@@ -87,15 +86,9 @@ def declined(request: Request, site: AtSite, token: str, fields: Fields) -> Resp
     """Somebody does not agree to take part: thanked, and led back to where they came from. Stores nothing."""
     if not is_valid(site.signing_key, token):
         return sorry(request, 404, STRANGER)
-    language = visitor_language(request, site)
+    language = visitor_language(request, fields.get("language", ""))
     data = pages.declined_page(site.study, site.mode, token, language, External.from_query(fields))
     return answer(request, "declined.html", data)
-
-
-def visitor_language(request: Request, site: Site) -> str:
-    """Of somebody whose session has not begun: chosen by hand (?language=de), or by the browser."""
-    accepted = request.headers.get("accept-language", "")
-    return negotiated(site.study.settings.survey, accepted, request.query_params.get("language", ""))
 
 
 def client_facts(request: Request, asked: Collection[str]) -> dict[str, str]:
@@ -110,14 +103,14 @@ def ratings(request: Request, site: AtSite, token: str, sent: answers.Posted) ->
     now = time.time()
     try:
         with site.database.writing() as connection:
-            session = known(site, connection, token, lock=True)
+            session = known(request, connection, token, lock=True)
             planned = answers.accepted(connection, site.study, session, sent)
             saved = answers.store(connection, planned, sent, now)
             steps.after_answers(connection, site.study, session, now)
-            following = pages.page(connection, site.study, known(site, connection, token))
+            following = pages.page(connection, site.study, known(request, connection, token))
     except answers.Refused as refused:
         note_refusal(site, token, sent, refused, now)
-        return JSONResponse({"error": str(refused)}, refused.http_status)
+        return JSONResponse({"error": told(request, refused.sentence, **refused.blanks)}, refused.http_status)
     return JSONResponse({"saved": saved, "next": following})
 
 
@@ -125,7 +118,7 @@ def ratings(request: Request, site: AtSite, token: str, sent: answers.Posted) ->
 def ask_withdraw(request: Request, site: AtSite, token: str) -> Response:
     """Explains what withdrawing means."""
     with site.database.reading() as connection:
-        session = sessions.find(connection, token)
+        session = find(request, connection, token)
     if session is None:
         return sorry(request, 404, STRANGER)
     return answer(
@@ -133,11 +126,17 @@ def ask_withdraw(request: Request, site: AtSite, token: str) -> Response:
     )
 
 
+@router.get("/s/{token}/{step}")
+def back(token: str) -> Response:
+    """Somebody opens the address of a form, as after an error: to the page where they are."""
+    return RedirectResponse(f"/s/{token}", 303)
+
+
 @router.post("/s/{token}/withdraw")
 def withdraw(request: Request, site: AtSite, token: str, fields: Fields) -> Response:
     """Deletes what this participant said; asked for twice, because it cannot be undone."""
     with site.database.writing() as connection:
-        session = sessions.find(connection, token, lock=True)
+        session = find(request, connection, token, lock=True)
         if session is None:
             return sorry(request, 404, STRANGER)
         if fields.get("sure") == "yes" and session["step"] != "withdrawn":
@@ -150,7 +149,7 @@ def leave_step(request: Request, site: AtSite, token: str, step: str, fields: Fi
     """Leaves a step that asks nothing or asks by a form; a step that is not the current one stays as it is."""
     now = time.time()
     with site.database.writing() as connection:
-        session = sessions.find(connection, token, lock=True)
+        session = find(request, connection, token, lock=True)
         if session is None or step not in steps.LEAVE:
             return sorry(request, 404, STRANGER)
         if session["step"] == step and session["study"] == site.study.identity:
@@ -158,12 +157,20 @@ def leave_step(request: Request, site: AtSite, token: str, step: str, fields: Fi
     return RedirectResponse(f"/s/{token}", 303)
 
 
-def known(site: Site, connection: Connection, token: str, *, lock: bool = False) -> RowMapping:
-    """The started session under `token`, or `Refused`."""
+def find(request: Request, connection: Connection, token: str, *, lock: bool = False) -> RowMapping | None:
+    """The session under `token`, if it was started; errors from here on are told in its language."""
     session = sessions.find(connection, token, lock=lock)
+    if session is not None:
+        request.state.language = session["language"]
+    return session
+
+
+def known(request: Request, connection: Connection, token: str, *, lock: bool = False) -> RowMapping:
+    """The started session under `token`, or `Refused`."""
+    session = find(request, connection, token, lock=lock)
     if session is None:
         raise answers.Refused(404, STRANGER)
-    if session["study"] != site.study.identity:
+    if session["study"] != site_of(request).study.identity:
         raise answers.Refused(410, CHANGED)
     return session
 

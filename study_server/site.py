@@ -6,15 +6,18 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Annotated, Any, Literal
 
+from babel.numbers import format_decimal
 from fastapi import Depends, Request, Response
 from fastapi.responses import JSONResponse
 from fastapi.templating import Jinja2Templates
-from jinja2 import Environment, FileSystemLoader, StrictUndefined
+from jinja2 import Environment, FileSystemLoader, StrictUndefined, pass_context
+from jinja2.runtime import Context
 from starlette.exceptions import HTTPException
 
 from study_server.database import Database
-from study_server.language import catalogue
+from study_server.language import catalogue, negotiated
 from study_server.manifest import BuiltStudy
+from study_server.texts import N_
 from study_server.throttle import Throttle
 
 Mode = Literal["live", "pilot", "simulated"]
@@ -28,6 +31,15 @@ environment.add_extension("jinja2.ext.i18n")  # {% trans %}; `answer` brings the
 environment.policies["ext.i18n.trimmed"] = True
 environment.globals.update(mode="", session=None)  # pages outside a session
 templates = Jinja2Templates(env=environment)
+
+
+@pass_context
+def number(context: Context, n: int) -> str:
+    """`n` as the page's language writes it: 1,200 in English, 1.200 in German."""
+    return format_decimal(n, locale=context["language"])
+
+
+environment.filters["number"] = number
 
 
 @dataclass
@@ -105,15 +117,46 @@ def wants_json(request: Request) -> bool:
 
 def answer(request: Request, template: str, data: Mapping[str, Any], http_status: int = 200) -> Response:
     """`data` as a page in its language, or as JSON if that is what was asked for."""
+    language = data.get("language", "en")
     if wants_json(request):
-        return JSONResponse(dict(data), http_status)
-    in_words = catalogue(data.get("language", "en"))
-    context = {"language": "en", **data, "gettext": in_words.gettext, "ngettext": in_words.ngettext}
-    page: Response = templates.TemplateResponse(request, template, context, http_status)
-    return page
+        response: Response = JSONResponse(dict(data), http_status)
+    else:
+        in_words = catalogue(language)
+        context = {"language": language, **data, "gettext": in_words.gettext, "ngettext": in_words.ngettext}
+        response = templates.TemplateResponse(request, template, context, http_status)
+    response.headers["Content-Language"] = language
+    response.headers["Vary"] = "Accept, Accept-Language"
+    return response
 
 
-def sorry(request: Request, http_status: int, sentence: str) -> Response:
-    """An error in one sentence."""
-    title = "Not found" if http_status == 404 else "Sorry"
-    return answer(request, "sorry.html", {"step": "error", "title": title, "error": sentence}, http_status)
+def sorry(request: Request, http_status: int, sentence: str, **blanks: object) -> Response:
+    """An error in one sentence, {blanks} filled in, in the language of whom it is for."""
+    language = language_of(request)
+    say = catalogue(language).gettext
+    title = say(NOT_FOUND if http_status == 404 else SORRY)
+    data = {"step": "error", "title": title, "error": told(request, sentence, **blanks), "language": language}
+    return answer(request, "sorry.html", data, http_status)
+
+
+NOT_FOUND, SORRY = N_("Not found"), N_("Sorry")
+
+
+def told(request: Request, sentence: str, **blanks: object) -> str:
+    """`sentence` with {blanks} filled in, in the language of whom it is for."""
+    text = catalogue(language_of(request)).gettext(sentence)
+    return text.format(**blanks) if blanks else text
+
+
+def language_of(request: Request) -> str:
+    """Of the session that the endpoint found (`request.state.language`), else of the visitor. Admin pages: English."""
+    if request.url.path.startswith("/admin"):
+        return "en"
+    found: str | None = getattr(request.state, "language", None)
+    return found or visitor_language(request)
+
+
+def visitor_language(request: Request, chosen: str = "") -> str:
+    """Of somebody whose session has not begun: chosen by hand (a form, ?language=de), or by the browser."""
+    accepted = request.headers.get("accept-language", "")
+    wanted = chosen or request.query_params.get("language", "")
+    return negotiated(site_of(request).study.settings.survey, accepted, wanted)
