@@ -23,6 +23,12 @@ SETTINGS = {  # fsync, synchronous_commit and full_page_writes stay on: what sur
     "shared_buffers": "16MB",
     "max_wal_size": "128MB",
 }
+CLEAN_UP = """
+read -r _
+pid=$(head -n 1 "$1/data/postmaster.pid") && kill -QUIT "$pid" && while kill -0 "$pid"; do sleep 0.1; done
+rm -rf "$1"
+"""
+"""Waits for the end of its standard input, which comes however our process ends, kill -9 included."""
 
 
 class PostgresServer:
@@ -116,6 +122,10 @@ class PostgresServer:
 def postgres_server() -> Iterator[PostgresServer]:
     """A running server on new data; both are gone afterwards."""
     folder = Path(tempfile.mkdtemp(prefix="fakesss-postgres-"))  # pytest's own folders are closed to other users
+    watcher = subprocess.Popen(
+        ["sh", "-c", CLEAN_UP, "sh", str(folder)],
+        stdin=subprocess.PIPE, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL, start_new_session=True,
+    )  # fmt: skip
     try:
         server = PostgresServer(folder)
         try:
@@ -125,6 +135,7 @@ def postgres_server() -> Iterator[PostgresServer]:
             server.stop()
     finally:
         shutil.rmtree(folder)
+        watcher.communicate()
 
 
 def binaries() -> Path:

@@ -16,9 +16,15 @@ from typing import Any
 import httpx
 
 PROGRAM = """
-import json, sys
+import json, os, signal, sys, threading
 from pathlib import Path
 from study_server.serve import serve
+
+def end_with_the_tests():
+    os.read(0, 1)  # returns when their process is gone, be it by kill -9
+    os.killpg(0, signal.SIGKILL)
+
+threading.Thread(target=end_with_the_tests, daemon=True).start()
 serve(Path(sys.argv[1]), port=int(sys.argv[2]), **json.loads(sys.argv[3]))
 """
 ROOT = Path(__file__).parents[1]
@@ -46,12 +52,15 @@ class ServerProcess:
         assert self.process is None, "it runs already"
         environment = {**os.environ, "PYTHONPATH": str(ROOT)}  # nsenter changes the working directory
         with self.log.open("ab") as log:
-            self.process = subprocess.Popen(self.command, stderr=log, env=environment, start_new_session=True)
+            self.process = subprocess.Popen(
+                self.command, stdin=subprocess.PIPE, stderr=log, env=environment, start_new_session=True
+            )
         for _ in range(1200):
             with contextlib.suppress(httpx.TransportError):  # not listening yet
                 httpx.get(f"{self.url}/health")
                 return
             if self.process.poll() is not None:
+                self.process.communicate()
                 self.process = None
                 raise NotStarted(self.said())
             time.sleep(0.05)
@@ -61,8 +70,10 @@ class ServerProcess:
     def end(self, number: int) -> None:
         """Send a signal to it and the workers that it started, and wait for its end."""
         if self.process is not None:
-            os.killpg(self.process.pid, number)
+            with contextlib.suppress(ProcessLookupError):  # it ended by itself
+                os.killpg(self.process.pid, number)
             self.process.wait()
+            self.process.communicate()
             self.process = None
 
     def kill(self) -> None:

@@ -1,5 +1,10 @@
 """The tests' own PostgreSQL: real, durable, empty for each test."""
 
+import subprocess
+import sys
+import time
+from pathlib import Path
+
 import psycopg
 import pytest
 from postgres_server import PostgresServer
@@ -34,3 +39,21 @@ def test_what_was_committed_survives_a_crash_and_nothing_else_does(postgres: Pos
     with psycopg.connect(address) as after:
         assert after.execute("SELECT number FROM seen").fetchall() == [(1,)]
     assert durability == [("on",), ("on",)]
+
+
+def test_the_server_goes_with_a_killed_test_run() -> None:
+    program = (
+        "import postgres_server as p\nwith p.postgres_server() as server: print(server.folder, flush=True); input()"
+    )
+    here = Path(__file__).parent
+    with subprocess.Popen(
+        [sys.executable, "-c", program], cwd=here, stdin=subprocess.PIPE, stdout=subprocess.PIPE, text=True
+    ) as run:
+        assert run.stdout is not None
+        folder = Path(run.stdout.readline().strip())
+        assert (folder / "data" / "postmaster.pid").exists()
+        run.kill()
+    end = time.monotonic() + 30
+    while folder.exists():
+        assert time.monotonic() < end
+        time.sleep(0.05)
