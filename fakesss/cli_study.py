@@ -48,12 +48,15 @@ def build_study(study: Path, jobs: int = 1, force: bool = False) -> dict[str, An
     from stimuli.build import build, levels_without_effect
     from stimuli.design import stimuli_of
     from stimuli.study import Study, study_file
+    from study_server.manifest import check_number_of_checks
     from study_server.settings import check_survey
 
     path = study_file(study)
     table = read_toml(path)
-    check_survey(table, path.name)
-    check_analysis(table, path.name, [stimulus.id for stimulus in stimuli_of(Study.load(study))])
+    asked = check_survey(table, path.name)
+    shown = [stimulus.id for stimulus in stimuli_of(Study.load(study))]
+    check_number_of_checks(asked, len(shown), path.name)
+    check_analysis(table, path.name, shown)
     manifest = build(study, jobs=jobs, force=force)
     told = [f"{e['id']}: {text}" for e in manifest["stimuli"] for text in e["warnings"]]
     for warning in [*dict.fromkeys(told), *levels_without_effect(manifest)]:

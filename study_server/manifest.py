@@ -9,6 +9,7 @@ from pathlib import Path
 from typing import Any
 
 from fakesss.problem import BadInput
+from study_server.assignment import most_checks
 from study_server.settings import SurveySettings, check_survey
 
 
@@ -128,4 +129,26 @@ def checked(built: BuiltStudy, path: Path, mend: str) -> BuiltStudy:
         raise BadInput(f"{path}: holds no stimuli; {mend}")
     if len(built.by_id) != len(built.stimuli):
         raise BadInput(f"{path}: two stimuli share an id; {mend}")
+    check_repeats(built, path, mend)
+    check_number_of_checks(built.settings, len(built.stimuli), "study.toml")
     return built
+
+
+def check_repeats(built: BuiltStudy, path: Path, mend: str) -> None:
+    """`BadInput` if a repeat shows none of the study's other pictures, or one that is repeated already."""
+    repeated: set[str] = set()
+    for stimulus in built.stimuli:
+        original = built.by_id.get(stimulus.repeat_of) if stimulus.repeat_of else None
+        if stimulus.repeat_of and (original is None or original.repeat_of or original.id in repeated):
+            raise BadInput(f'{path}: "{stimulus.id}" repeats "{stimulus.repeat_of}", which cannot be repeated; {mend}')
+        repeated.update({original.id} if original else ())
+
+
+def check_number_of_checks(settings: SurveySettings, pictures: int, source: str) -> None:
+    """`BadInput` if there are more instructed items than find a place among so many pictures."""
+    blocks = len(settings.question) if settings.survey.blocks == "by-question" else 1
+    most = most_checks(pictures * blocks)
+    if settings.survey.checks > most:
+        raise BadInput(
+            f"{source}: survey.checks: {settings.survey.checks}: must be <= {most}, half of the pictures shown"
+        )

@@ -21,6 +21,7 @@ from study_server.manifest import BuiltStudy, Stimulus
 from study_server.settings import Question
 
 Steps = Annotated[float, Field(ge=-1000, le=1000)]  # a hundred scales: beyond it float32 has no answer
+Share = Annotated[float, Field(ge=0, le=1)]
 Spread = Annotated[float, Field(ge=0, le=1000)]
 
 
@@ -36,10 +37,14 @@ class QuestionEffects(Strict):
 
 
 class Effects(Strict):
-    """The effects file: two spreads and a table a question."""
+    """The effects file: spreads, manners, and a table a question. Manners change no answer, only how it is given."""
 
     person_sd: Spread = Field(0.7, description="standard deviation of the person term, steps")
     noise_sd: Spread = Field(0.9, description="standard deviation of the noise, steps")
+    slow: Share = Field(0.1, description="share of raters who take three times as long")
+    clumsy: Share = Field(
+        0.1, description="share of raters who mistype and correct, send twice, reload, and overlook instructed items"
+    )
     question: dict[str, QuestionEffects] = Field({}, description="question -> its effects")
 
 
@@ -182,14 +187,24 @@ class Rater:
     seed: int
     number: int
 
-    def rating(self, stimulus: Stimulus, question: int) -> int:
-        """The answer to the question at index `question` for a picture: 1 .. scale."""
-        asked = self.study.settings.question[question]
-        person = self.effects.person_sd * self.random(1, question).standard_normal()
+    def rating(self, stimulus: Stimulus, question: str) -> int:
+        """The answer to the question of that name for a picture: 1 .. scale."""
+        index, asked = next(pair for pair in enumerate(self.study.settings.question) if pair[1].name == question)
+        person = self.effects.person_sd * self.random(1, index).standard_normal()
         picture = self.study.stimuli.index(stimulus)
-        noise = self.effects.noise_sd * self.random(2, question, picture).standard_normal()
+        noise = self.effects.noise_sd * self.random(2, index, picture).standard_normal()
         answer = round(expected(self.effects, self.study, asked, stimulus) + person + noise)
         return min(max(answer, 1), asked.scale)
+
+    @property
+    def is_slow(self) -> bool:
+        """Whether this rater takes three times as long."""
+        return bool(self.random(5).random() < self.effects.slow)
+
+    @property
+    def is_clumsy(self) -> bool:
+        """Whether this rater mistypes and corrects, sends twice, reloads, and overlooks instructed items."""
+        return bool(self.random(6).random() < self.effects.clumsy)
 
     def random(self, *use: int) -> np.random.Generator:
         """A generator of its own for each use."""

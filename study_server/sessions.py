@@ -1,6 +1,7 @@
 """A participant's session in the database: started once, found by its token, moved on step by step."""
 
 import secrets
+from collections import Counter
 from collections.abc import Mapping
 from dataclasses import asdict, dataclass, field
 from typing import Any
@@ -131,21 +132,20 @@ def emptiest_row(connection: Connection, study: BuiltStudy, mode: str, now: floa
 def planned(study: BuiltStudy, session: str, trials: list[dict[str, Any]]) -> list[dict[str, Any]]:
     """The session's presentations: practice first, then the trials in their order."""
     practice = [asdict(trial) for trial in design_of(study).practice_trials()]
-    shown: dict[str, int] = {}
+    shown: Counter[tuple[str, ...]] = Counter()
     plan = []
     for place, trial in enumerate([*practice, *trials]):
         stimulus = study.by_id[trial["stimulus"]]
         is_practice = place < len(practice)
-        original = stimulus.repeat_of or stimulus.id
-        if not is_practice:
-            shown[original] = shown.get(original, 0) + 1
+        showing = (stimulus.repeat_of or stimulus.id, *trial["questions"])
+        shown[showing] += not is_practice
         plan.append(
             {
                 "session": session,
                 "place": place,
                 "practice": is_practice,
                 "trial": place + 1 if is_practice else place + 1 - len(practice),
-                "presentation": 1 if is_practice else shown[original],
+                "presentation": 1 if is_practice else shown[showing],
                 "stimulus": stimulus.id,
                 "stimulus_sha256": stimulus.sha256,
                 "repeat_of": stimulus.repeat_of,

@@ -13,6 +13,7 @@ from tqdm import tqdm
 
 from fakesss.problem import BadInput
 from study_server.manifest import BuiltStudy
+from study_server.pages import trials
 from study_server.raters import Effects, Rater, default_effects, load_effects
 from study_server.walk import Walked, patiently, walk
 
@@ -49,7 +50,7 @@ def simulate(
         effects = load_effects(effects, study)
     first = raters_before(url, study, admin_secret)
     raters = [Rater(study, effects or default_effects(study), seed, first + number) for number in range(started)]
-    quits = quitting(started, completed, len(study.stimuli), seed)
+    quits = quitting(started, completed, trials(study), seed)
     with tqdm(total=pictures(study, quits), unit="picture", disable=None if progress else True) as bar:
         walks = all_walks(url, raters, quits, bar)
     acknowledged = {key: rating for walked in walks for key, rating in walked.acknowledged.items()}
@@ -68,17 +69,17 @@ def simulate(
     }
 
 
-def quitting(started: int, completed: int, trials: int, seed: int) -> list[int | None]:
+def quitting(started: int, completed: int, pictures: int, seed: int) -> list[int | None]:
     """For each rater the number of pictures after which they leave, or None: exactly `completed` stay."""
     random = Random(f"quitting {seed}")
     leavers = set(random.sample(range(started), started - completed))
-    return [random.randrange(trials) if number in leavers else None for number in range(started)]
+    return [random.randrange(pictures) if number in leavers else None for number in range(started)]
 
 
 def pictures(study: BuiltStudy, quits: list[int | None]) -> int:
     """How many pictures will be rated in all, practice included."""
     practice = study.settings.survey.practice
-    return sum(practice + (len(study.stimuli) if quit_after is None else quit_after) for quit_after in quits)
+    return sum(practice + (trials(study) if quit_after is None else quit_after) for quit_after in quits)
 
 
 def all_walks(url: str, raters: list[Rater], quits: list[int | None], bar: "tqdm[Any]") -> list[Walked]:

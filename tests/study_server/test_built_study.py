@@ -85,3 +85,20 @@ def test_other_words_or_pictures_make_another_study(tmp_path: Path) -> None:
     assert one.identity == load_study(write_study(tmp_path / "b")).identity
     assert one.identity != load_study(write_study(tmp_path / "c", size=64)).identity
     assert one.identity != load_study(write_study(tmp_path / "d", survey={"practice": 2})).identity
+
+
+def test_more_instructed_items_than_find_a_place(tmp_path: Path) -> None:
+    with pytest.raises(BadInput, match=r"study\.toml: survey\.checks: 3: must be <= 2, half of the pictures shown"):
+        load_study(write_study(tmp_path, 4, survey={"checks": 3}))
+    assert load_study(write_study(tmp_path, 4, survey={"checks": 3, "blocks": "by-question"}))
+
+
+def test_a_picture_repeated_twice_is_no_study_of_ours(tmp_path: Path) -> None:
+    write_study(tmp_path, 3)
+    path = tmp_path / "stimuli" / "manifest.json"
+    manifest = json.loads(path.read_text())
+    for entry in manifest["stimuli"][1:]:
+        entry |= {"role": "repeat", "same_picture_as": "img01"}
+    path.write_text(json.dumps(manifest))
+    with pytest.raises(BadInput, match='"img03" repeats "img01", which cannot be repeated; run `fakesss build'):
+        load_study(tmp_path)

@@ -28,7 +28,7 @@ def test_the_distribution_is_that_of_single_raters(built: BuiltStudy, effects: E
     effects = effects or default_effects(built)
     single = np.array(
         [
-            [rater.rating(stimulus, 0) for stimulus in built.stimuli[:6]]
+            [rater.rating(stimulus, "translucent") for stimulus in built.stimuli[:6]]
             for rater in (Rater(built, effects, 3, number) for number in range(1500))
         ]
     )

@@ -100,7 +100,7 @@ def test_a_server_out_of_reach(study: Path, monkeypatch: pytest.MonkeyPatch) -> 
 def test_the_same_seed_gives_the_same_answers(built: BuiltStudy) -> None:
     def answers(seed: int, number: int) -> list[int]:
         rater = Rater(built, default_effects(built), seed, number)
-        return [rater.rating(stimulus, 0) for stimulus in built.stimuli]
+        return [rater.rating(stimulus, "translucent") for stimulus in built.stimuli]
 
     assert answers(1, 2) == answers(1, 2)
     assert len({tuple(answers(seed, number)) for seed in (1, 2) for number in range(4)}) == 8
@@ -132,11 +132,11 @@ def test_planted_effects_come_out(built: BuiltStudy) -> None:
     )
     raters = [Rater(built, effects, 5, number) for number in range(400)]
     base, more, less = (
-        np.mean([rater.rating(built.by_id[name], 0) for rater in raters]) for name in ("img04", "img05", "img06")
+        np.mean([rater.rating(built.by_id[name], "translucent") for rater in raters]) for name in ("img04", "img05", "img06")
     )
     assert more - base == pytest.approx(1.0, abs=0.15)
     assert less - base == pytest.approx(-1.0, abs=0.15)
-    assert {rater.rating(built.by_id["img01"], 1) for rater in raters} <= set(range(1, 8))
+    assert {rater.rating(built.by_id["img01"], "realistic") for rater in raters} <= set(range(1, 8))
 
 
 def test_the_defaults_mirror_the_thesis(built: BuiltStudy) -> None:
@@ -157,7 +157,7 @@ def test_an_effects_file(tmp_path: Path, built: BuiltStudy) -> None:
     )
     effects = load_effects(path, built)
     rater = Rater(built, effects, 1, 1)
-    assert [rater.rating(built.by_id[name], 0) for name in ("img01", "img02", "img03")] == [3, 2, 5]
+    assert [rater.rating(built.by_id[name], "translucent") for name in ("img01", "img02", "img03")] == [3, 2, 5]
 
 
 @pytest.mark.parametrize(
@@ -203,7 +203,7 @@ def test_an_effects_file_that_is_wrong(tmp_path: Path, built: BuiltStudy, text: 
 def test_what_a_seed_draws_is_kept(built: BuiltStudy) -> None:
     """Answers published with a seed must come out again, as drawn when effects had no pictures."""
     rater = Rater(built, default_effects(built), 2011, 3)
-    assert [[rater.rating(stimulus, question) for stimulus in built.stimuli] for question in (0, 1)] == [
+    assert [[rater.rating(stimulus, question) for stimulus in built.stimuli] for question in ("translucent", "realistic")] == [
         [5, 4, 5, 4, 4, 5, 3, 3, 4],
         [5, 4, 4, 6, 2, 2, 3, 4, 5],
     ]
