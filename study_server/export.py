@@ -55,7 +55,7 @@ def rating_rows(source: Source) -> Iterator[dict[str, Any]]:
             "study_sha256": source.study.sha256,
         }
         for trial in trials_of(source.connection, person["id"]):
-            facts = {name: trial[name] for name in RATINGS if name in trial}
+            facts = {name: trial[name] for name in RATINGS if name in trial and name != "check_expected"}
             facts["shown_at"] = iso(trial["shown_at"])
             for question in trial["questions"]:
                 yield facts | shared | {"question": question} | given.get((trial["place"], question), {})
