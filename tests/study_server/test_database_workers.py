@@ -96,7 +96,6 @@ def test_a_parent_that_is_killed_leaves_no_worker_behind(study: Path, tmp_path: 
         assert server.process is not None
         server.process.kill()
         server.process.wait()
-        server.process = None
         until(lambda: is_free(server.port))
         until(lambda: not any(Path(f"/proc/{pid}/fd").exists() for pid in workers))
 
