@@ -1,37 +1,27 @@
-"""The researcher's pages: how the study goes, the export, the report."""
+"""The researcher's page: the door, how the study goes, and whether people are let in."""
 
 import time
-from collections.abc import Iterator
-from pathlib import Path
-from typing import Annotated
+from typing import Any, get_args
 
-from fastapi import APIRouter, Depends, Request, Response
-from fastapi.responses import FileResponse, RedirectResponse, StreamingResponse
+from fastapi import APIRouter, Request, Response
+from fastapi.responses import RedirectResponse
+from sqlalchemy import Connection
 
-from fakesss.problem import BadInput
-from study_server import counts
-from study_server.admin_door import COOKIE, COOKIE_S, cookie_value, is_admin, is_secret
-from study_server.export import ROWS, Source, table_text
+from study_server import counts, gates, happenings
+from study_server.admin_door import COOKIE, COOKIE_S, Locked, Unlocked, cookie_value, is_secret
+from study_server.downloads import router as downloads
+from study_server.export import ROWS
+from study_server.gates import Gate
 from study_server.sessions import release_s
-from study_server.site import AtSite, Fields, Mode, Site, answer, site_of, sorry
+from study_server.site import AtSite, Fields, Site, answer, site_of, sorry, wants_json
+from study_server.times import times
+
+__all__ = ["Locked", "ask_secret", "router"]
 
 router = APIRouter(prefix="/admin")
+router.include_router(downloads)
 
 TOO_MANY = "Too many wrong secrets; please wait a minute."
-
-
-class Locked(Exception):
-    """The admin's secret is needed."""
-
-
-def unlocked(request: Request, site: AtSite) -> Site:
-    """The site, for those who may see this page."""
-    if not is_admin(request, site):
-        raise Locked
-    return site
-
-
-Unlocked = Annotated[Site, Depends(unlocked)]
 
 
 def ask_secret(request: Request, _: Exception) -> Response:
@@ -70,50 +60,53 @@ def logout() -> Response:
 
 @router.get("")
 def progress(request: Request, site: Unlocked) -> Response:
-    """How many came, where they are, who left and when."""
+    """How many came, where they are, who left and when, how long they take, and what to do about it."""
+    now = time.time()
     with site.database.reading() as connection:
-        figures = counts.overview(connection, site.study.identity, site.mode, time.time(), release_s(site.study))
-    data = {"step": "admin", "title": site.study.title, "mode": site.mode, "tables": list(ROWS), **figures}
+        data = {
+            "step": "admin",
+            "title": site.study.title,
+            "mode": site.mode,
+            "tables": list(ROWS),
+            "at": round(now, 3),
+            "is_sqlite": site.database.is_sqlite,
+            **figures(connection, site, now),
+        }
     return answer(request, "admin.html", data)
 
 
-@router.get("/export/{table}.csv")
-def download(request: Request, site: Unlocked, table: str, mode: Mode | None = None) -> Response:
-    """One table of the export, sent as it is read: of `mode`, or else of the mode that is served."""
-    if table not in ROWS:
-        return sorry(request, 404, "There is no such table.")
-
-    chosen = mode or site.mode
-
-    def pieces() -> Iterator[str]:
-        with site.database.reading() as connection:
-            yield from table_text(table, Source(connection, site.study, chosen, site.salt))
-
-    disposition = f'attachment; filename="{table}{"" if chosen == "live" else f"-{chosen}"}.csv"'
-    return StreamingResponse(pieces(), media_type="text/csv", headers={"Content-Disposition": disposition})
+def figures(connection: Connection, site: Site, now: float) -> dict[str, Any]:
+    """Everything on the page that changes while people take part, of one snapshot."""
+    which = (site.study.identity, site.mode)
+    return {
+        **counts.overview(connection, *which, now, release_s(site.study)),
+        "times": times(connection, *which),
+        "withdrawals": happenings.withdrawals(connection, *which),
+        "refusals": happenings.refusals(connection, *which),
+        "retention": happenings.retention(connection, site.study, now),
+        "gate": gates.standing(connection, *which),
+    }
 
 
-@router.get("/report/{path:path}")
-def report(request: Request, site: Unlocked, path: str) -> Response:
-    """The report, written anew when its first page is asked for."""
-    if site.reporter is None:
-        return sorry(request, 404, "This server was started without a report; run `fakesss report` on the study.")
-    with site.database.reading() as connection:
-        figures = counts.overview(connection, site.study.identity, site.mode, time.time(), release_s(site.study))
-    if not figures["ratings"]:
-        return sorry(request, 409, "There are no ratings yet, so there is nothing to report.")
-    try:
-        folder = site.reporter.folder(anew=path in ("", "index.html"))
-    except BadInput as problem:
-        return sorry(request, 409, str(problem))
-    wanted = file_inside(folder, path or "index.html")
-    return FileResponse(wanted) if wanted else sorry(request, 404, "The report has no such file.")
+@router.post("/gate")
+def change_gate(request: Request, site: Unlocked, fields: Fields) -> Response:
+    """Pauses, closes or opens the study. Closing it on people who are under way needs `sure=yes`."""
+    which, now = (site.study.identity, site.mode), time.time()
+    state: Gate | None = next((known for known in get_args(Gate) if known == fields.get("state")), None)
+    if state is None:
+        return sorry(request, 422, "state: must be open, paused or closed.")
+    with site.database.writing() as connection:
+        active = counts.active(connection, *which, now, release_s(site.study))
+        if state == "closed" and active and fields.get("sure") != "yes":
+            return ask_to_close(request, site, active)
+        gates.set_gate(connection, *which, state, now)
+        standing = gates.standing(connection, *which)
+    return answer(request, "admin.html", standing) if wants_json(request) else RedirectResponse("/admin", 303)
 
 
-def file_inside(folder: Path, name: str) -> Path | None:
-    """The file of that name in or under `folder`, or None."""
-    try:
-        path = (folder / name).resolve()
-        return path if path.is_relative_to(folder.resolve()) and path.is_file() else None
-    except (OSError, ValueError):  # a name that no file can have: too long, or with a NUL
-        return None
+def ask_to_close(request: Request, site: Site, active: int) -> Response:
+    """Tells how many people would be turned away."""
+    people = "1 person is" if active == 1 else f"{active} people are"
+    error = f"{people} under way and would be turned away; to close all the same, send sure=yes."
+    data = {"step": "close", "title": site.study.title, "mode": site.mode, "active": active, "error": error}
+    return answer(request, "close.html", data, 409)

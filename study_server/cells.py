@@ -16,7 +16,7 @@ def csv_text(columns: Sequence[str], rows: Iterable[Mapping[str, Any]]) -> Itera
     """Header and rows as pieces of CSV; memory does not grow with the number of rows."""
     buffer = io.StringIO()
     writer = csv.writer(buffer, lineterminator="\n")
-    writer.writerow(columns)
+    writer.writerow([cell(column) for column in columns])
     for number, row in enumerate(rows, 1):
         writer.writerow([cell(row.get(column)) for column in columns])
         if number % ROWS_AT_ONCE == 0:
@@ -40,3 +40,8 @@ def iso(seconds: float | None) -> str | None:
     if seconds is None:
         return None
     return datetime.fromtimestamp(seconds, UTC).isoformat(timespec="milliseconds").replace("+00:00", "Z")
+
+
+def minute(seconds: float) -> str:
+    """Unix seconds as "2026-01-31 14:05 UTC", for people."""
+    return datetime.fromtimestamp(seconds, UTC).strftime("%Y-%m-%d %H:%M UTC")
