@@ -84,6 +84,17 @@ class ServerProcess:
         """SIGTERM, as when it is restarted on purpose."""
         self.end(signal.SIGTERM)
 
+    def workers(self) -> list[int]:
+        """Process ids of its workers: the children that answer for it, without Python's resource tracker."""
+        assert self.process is not None
+        children = Path(f"/proc/{self.process.pid}/task/{self.process.pid}/children").read_text().split()
+        found = []
+        for pid in children:
+            with contextlib.suppress(FileNotFoundError):  # it has just ended
+                if b"spawn_main" in Path(f"/proc/{pid}/cmdline").read_bytes():
+                    found.append(int(pid))
+        return found
+
     def said(self) -> str:
         """Everything that it wrote on standard error so far."""
         return self.log.read_text(encoding="utf-8")

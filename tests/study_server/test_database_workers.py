@@ -11,7 +11,7 @@ from pathlib import Path
 
 import httpx
 import pytest
-from server_process import ServerProcess, server_process
+from server_process import server_process
 from survey_client import JSON, Participant
 
 from fakesss.problem import BadInput
@@ -20,13 +20,6 @@ from study_server.export import export_ratings
 from study_server.manifest import load_study
 from study_server.serve import serve
 from study_server.simulate import simulate
-
-
-def workers_of(server: ServerProcess) -> list[int]:
-    """Process ids of the workers: the children that answer for the parent, without Python's resource tracker."""
-    assert server.process is not None
-    children = Path(f"/proc/{server.process.pid}/task/{server.process.pid}/children").read_text().split()
-    return [int(pid) for pid in children if b"spawn_main" in Path(f"/proc/{pid}/cmdline").read_bytes()]
 
 
 def until(condition: Callable[[], bool], seconds: float = 60.0) -> None:
@@ -47,15 +40,15 @@ def test_two_workers_store_every_answer_once_and_a_dead_one_is_replaced(
 ) -> None:
     secret = admin_secret(study, postgres_url)
     with server_process(study, tmp_path / "log", database_url=postgres_url, workers=2) as server:
-        until(lambda: len(workers_of(server)) == 2)
+        until(lambda: len(server.workers()) == 2)
         with ThreadPoolExecutor(1) as pool:
             load = pool.submit(
                 simulate, server.url, load_study(study), secret, started=30, completed=26, progress=False
             )
-            first = workers_of(server)[0]
+            first = server.workers()[0]
             os.kill(first, signal.SIGKILL)
             result = load.result()
-        until(lambda: len(workers_of(server)) == 2 and first not in workers_of(server))
+        until(lambda: len(server.workers()) == 2 and first not in server.workers())
         assert (result["started"], result["completed"]) == (30, 26)
         assert (result["lost"], result["duplicated"]) == (0, 0)
         assert result["stored"] >= result["acknowledged"] >= 26 * 6
@@ -70,7 +63,7 @@ def test_two_workers_store_every_answer_once_and_a_dead_one_is_replaced(
 
 def test_equal_posts_at_once_to_several_workers_are_stored_once(study: Path, tmp_path: Path, postgres_url: str) -> None:
     with server_process(study, tmp_path / "log", database_url=postgres_url, workers=2) as server:
-        until(lambda: len(workers_of(server)) == 2)
+        until(lambda: len(server.workers()) == 2)
         people = [Participant(server.url).to_trials() for _ in range(2)]
 
         def send(person: Participant) -> tuple[int, str]:
@@ -91,8 +84,8 @@ def test_equal_posts_at_once_to_several_workers_are_stored_once(study: Path, tmp
 
 def test_a_parent_that_is_killed_leaves_no_worker_behind(study: Path, tmp_path: Path, postgres_url: str) -> None:
     with server_process(study, tmp_path / "log", database_url=postgres_url, workers=2) as server:
-        until(lambda: len(workers_of(server)) == 2)
-        workers = workers_of(server)
+        until(lambda: len(server.workers()) == 2)
+        workers = server.workers()
         assert server.process is not None
         server.process.kill()
         server.process.wait()
