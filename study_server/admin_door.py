@@ -6,10 +6,11 @@ That leaves its length as what guessing fails on, so that a short one is refused
 
 import hmac
 import time
+from typing import Annotated
 
-from fastapi import Request
+from fastapi import Depends, Request
 
-from study_server.site import Site
+from study_server.site import AtSite, Site
 
 COOKIE = "fakesss_admin"
 COOKIE_S = 12 * 3600
@@ -47,3 +48,17 @@ def is_admin(request: Request, site: Site) -> bool:
     if not site.throttle.is_closed():
         site.throttle.note()
     return False
+
+
+class Locked(Exception):
+    """The admin's secret is needed."""
+
+
+def unlocked(request: Request, site: AtSite) -> Site:
+    """The site, for those who may see this page."""
+    if not is_admin(request, site):
+        raise Locked
+    return site
+
+
+Unlocked = Annotated[Site, Depends(unlocked)]

@@ -4,13 +4,23 @@ open: everybody. paused: nobody starts, who is under way goes on. closed: nobody
 that were given before and arrive late are still stored.
 """
 
-from typing import Literal
+from typing import Any, Literal
 
 from sqlalchemy import Connection, insert, select
 
 from study_server import schema
+from study_server.cells import minute
 
 Gate = Literal["open", "paused", "closed"]
+
+MEANING: dict[Gate, str] = {
+    "open": "People can start, and go on.",
+    "paused": "Nobody can start; who is under way goes on.",
+    "closed": "Nobody can start or go on; answers that arrive late are still stored.",
+}
+
+LATEST = 20
+"""How many changes are shown."""
 
 gates = schema.gates.c
 
@@ -26,3 +36,12 @@ def set_gate(connection: Connection, study: str, mode: str, state: Gate, now: fl
     """From now on."""
     if gate(connection, study, mode) != state:
         connection.execute(insert(schema.gates).values(study=study, mode=mode, state=state, at=now))
+
+
+def standing(connection: Connection, study: str, mode: str) -> dict[str, Any]:
+    """How the gate stands, what that means, and its latest changes."""
+    state = gate(connection, study, mode)
+    mine = select(gates.at, gates.state).where(gates.study == study, gates.mode == mode)
+    changes = connection.execute(mine.order_by(gates.id.desc()).limit(LATEST))
+    history = [{"at": minute(at), "state": changed_to} for at, changed_to in changes]
+    return {"state": state, "meaning": MEANING[state], "history": history}
