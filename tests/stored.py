@@ -13,7 +13,8 @@ from sqlalchemy import Connection, func, select
 from study_server import schema
 from study_server.database import open_database
 
-Answers = Mapping[tuple[str, int, str], list[int]]
+Answers = Mapping[tuple[int, str], list[int]]
+"""One session's: (place, question) -> the first answer and its revisions, oldest first; practice included."""
 
 
 @dataclass(frozen=True)
@@ -21,16 +22,11 @@ class Stored:
     """Sound contents of a database. Sessions by their public id."""
 
     sessions: Mapping[str, Mapping[str, Any]]
-    answers: Answers
-    """(session, place, question) -> the first answer and its revisions, oldest first; practice included."""
+    answers: Mapping[str, Answers]
     events: Mapping[str, Counter[str]]
     """Session -> how many events of each kind."""
     places_taken: list[int]
     """Sessions of each order row, withdrawn ones too."""
-
-    def of(self, session: str) -> dict[tuple[int, str], list[int]]:
-        """One session's answers by (place, question)."""
-        return {key[1:]: given for key, given in self.answers.items() if key[0] == session}
 
 
 def sound(url: str) -> Stored:
@@ -57,28 +53,29 @@ def sound_copy(folder: Path) -> Stored:
 
 def judged(connection: Connection) -> Stored:
     """Everything, with each session judged."""
-    sessions = rows(connection, schema.sessions)
-    presentations = rows(connection, schema.presentations)
-    answers: dict[tuple[str, int, str], list[int]] = {}
+    sessions = {row["id"]: row for row in rows(connection, schema.sessions)}
+    plans: dict[str, list[dict[str, Any]]] = {name: [] for name in sessions}
+    for row in rows(connection, schema.presentations):
+        plans[row["session"]].append(row)
+    answers: dict[str, dict[tuple[int, str], list[int]]] = {name: {} for name in sessions}
     for row in rows(connection, schema.ratings):
-        key = (row["session"], row["place"], row["question"])
-        assert key not in answers, f"twice: {key}"
-        answers[key] = [row["rating"]]
+        key = (row["place"], row["question"])
+        assert key not in answers[row["session"]], f"twice: {key}"
+        answers[row["session"]][key] = [row["rating"]]
     for row in sorted(rows(connection, schema.revisions), key=lambda row: row["revision"]):
-        given = answers[row["session"], row["place"], row["question"]]
+        given = answers[row["session"]][row["place"], row["question"]]
         assert row["revision"] == len(given), f"revisions are not numbered 1, 2, ...: {row}"
         given.append(row["rating"])
-    events: dict[str, Counter[str]] = {session["id"]: Counter() for session in sessions}
+    events: dict[str, Counter[str]] = {name: Counter() for name in sessions}
     for row in rows(connection, schema.events):
         events[row["session"]][row["kind"]] += 1
     withdrawals = Counter(row["session"] for row in rows(connection, schema.withdrawals))
-    for session in sessions:
-        mine = [row for row in presentations if row["session"] == session["id"]]
-        judge(session, mine, answers, events[session["id"]], withdrawals[session["id"]])
-    held = Counter(session["row"] for session in sessions)
+    for name, session in sessions.items():
+        judge(session, plans[name], answers[name], events[name], withdrawals[name])
+    held = Counter(session["row"] for session in sessions.values())
     order_rows = connection.scalar(select(func.count()).select_from(schema.order_rows)) or 0
     return Stored(
-        sessions={session["id"]: session for session in sessions},
+        sessions=sessions,
         answers=answers,
         events=events,
         places_taken=[held[row] for row in range(order_rows)],
@@ -99,16 +96,16 @@ def judge(
 ) -> None:
     """One session: each picture's answers are there all or not at all, and a code stands for all of them."""
     who = f"session {session['id']} at {session['step']}"
-    expected = stored = 0
+    expected = stored = surplus = 0
     for planned in presentations:
         names = list(planned["questions"]) + ["check"] * (planned["check_expected"] is not None)
-        given = [name for name in names if (session["id"], planned["place"], name) in answers]
-        here = [key for key in answers if key[:2] == (session["id"], planned["place"])] if given else []
-        assert len(given) == len(here), f"{who}: an answer to what was not asked: {here}"
-        assert len(given) in (0, len(names)), f"{who}: half of the answers to picture {planned['place']}"
+        given = sum((planned["place"], name) in answers for name in names)
+        assert given in (0, len(names)), f"{who}: half of the answers to picture {planned['place']}"
         assert (planned["answered_at"] is not None) == bool(given), f"{who}: picture {planned['place']}"
+        surplus -= given
         expected += len(names) * (not planned["practice"])
-        stored += len(given) * (not planned["practice"])
+        stored += given * (not planned["practice"])
+    assert len(answers) + surplus == 0, f"{who}: an answer to what was not asked"
     finished = session["finished_at"] is not None
     if session["step"] == "withdrawn":
         assert (withdrawals, stored, finished, session["completion_code"]) == (1, 0, False, None), who
