@@ -36,6 +36,7 @@ class PostgresServer:
 
     def __init__(self, folder: Path) -> None:
         self.folder = folder
+        self.data = folder / "data"
         self.port = free_port()
         self.log = folder / "server.log"
         self.process: subprocess.Popen[bytes] | None = None
@@ -46,14 +47,9 @@ class PostgresServer:
         secret.write_text(PASSWORD)
         self.run("initdb", "-D", self.data, "-U", "survey", "--auth=scram-sha-256", f"--pwfile={secret}",
                  "--no-locale", "--encoding=UTF8", "--no-sync").wait()  # fmt: skip
-        assert (self.folder / "data" / "PG_VERSION").exists(), self.log.read_text()
+        assert (self.data / "PG_VERSION").exists(), self.log.read_text()
 
-    @property
-    def data(self) -> str:
-        """The data folder."""
-        return str(self.folder / "data")
-
-    def run(self, program: str, *arguments: str) -> "subprocess.Popen[bytes]":
+    def run(self, program: str, *arguments: str | Path) -> "subprocess.Popen[bytes]":
         """Start one of PostgreSQL's programs as its user: it refuses root. What it says goes to the log."""
         who = {"user": self.owner.pw_uid, "group": self.owner.pw_gid, "extra_groups": []} if self.owner else {}
         with self.log.open("ab") as log:
