@@ -1,6 +1,7 @@
 """The `fakesss` command: composes the four packages. Each command imports what it needs when it runs.
 
-The commands themselves stand in `cli_study`, `cli_analysis`, `cli_power`, `cli_picture` and `cli_measure`.
+The commands themselves stand in `cli_study`, `cli_analysis`, `cli_power`, `cli_picture`, `cli_measure` and
+`cli_survey`.
 """
 
 import json
@@ -34,7 +35,8 @@ def main() -> None:
     import fakesss.cli_measure
     import fakesss.cli_picture
     import fakesss.cli_power
-    import fakesss.cli_study  # noqa: F401  (all add their commands)
+    import fakesss.cli_study
+    import fakesss.cli_survey  # noqa: F401  (all add their commands)
 
     try:
         sys.exit(commands(standalone_mode=False) or 0)

@@ -13,10 +13,11 @@ from sqlalchemy.exc import DatabaseError, TimeoutError
 from starlette.exceptions import HTTPException
 
 from fakesss.problem import BadInput
-from study_server import admin, participant, pictures
+from study_server import admin, participant, pictures, plates
 from study_server.admin_door import SHORTEST_SECRET
 from study_server.adoption import adopt_study
 from study_server.database import Database, default_url, is_writable, open_database, reason, secret, shown_url
+from study_server.gates import gate
 from study_server.manifest import load_study, study_changed
 from study_server.site import HERE, AtSite, Mode, Reporter, Site, sorry
 from study_server.texts import N_
@@ -47,7 +48,7 @@ def create_app(
     app.add_middleware(WebSafety, report_script=report_script)
     app.mount("/static", StaticFiles(directory=HERE / "static"))
     app.get("/health")(health)
-    for router in (pictures.router, admin.router, participant.router):
+    for router in (pictures.router, plates.router, admin.router, participant.router):
         app.include_router(router)
     app.add_exception_handler(DatabaseError, not_saved)
     app.add_exception_handler(TimeoutError, not_saved)
@@ -95,8 +96,10 @@ def chosen_secret(database: Database) -> str:
 def health(site: AtSite) -> Response:
     """200 if a rating could be brought to disk now, else 503."""
     if is_writable(site.database):
+        with site.database.reading() as connection:
+            standing = gate(connection, site.study.identity, site.mode)
         facts = {"status": "ok", "study": site.study.title, "identity": site.study.identity, "mode": site.mode}
-        return JSONResponse(facts)
+        return JSONResponse(facts | {"gate": standing})
     return JSONResponse({"status": "the database cannot be written"}, 503)
 
 
