@@ -184,16 +184,19 @@ def simulate(
 
 @commands.command()
 @STUDY
-@click.option("-o", "--out", type=click.Path(path_type=Path), help="Folder for the files (default: STUDY/export).")
+@click.option("-o", "--out", type=click.Path(path_type=Path), help="Folder (default: STUDY/export, STUDY/psych-ds).")
+@click.option("--format", "form", type=click.Choice(["csv", "psych-ds"]), default="csv", show_default=True)
 @click.option("--database", metavar="URL", help="Where the ratings are (default: STUDY/ratings.sqlite).")
 @click.option("--mode", type=click.Choice(["live", "pilot", "simulated"]), default="live", show_default=True)
 @AS_JSON
-def export(study: Path, out: Path | None, database: str | None, mode: Mode, as_json: bool) -> None:
-    """Write ratings, participants, events, stimuli and a codebook of STUDY as CSV.
+def export(study: Path, out: Path | None, form: str, database: str | None, mode: Mode, as_json: bool) -> None:
+    """Write ratings, participants, events, stimuli and a codebook of STUDY: CSV files, or a Psych-DS dataset.
 
-    Example: fakesss export my-study -o data
+    Example: fakesss export my-study --format psych-ds -o dataset
     """
     from study_server.export import export_ratings
+    from study_server.psych_ds import export_psych_ds
 
-    files = [str(path) for path in export_ratings(study, out or study / "export", mode=mode, database_url=database)]
+    write, usual = (export_ratings, "export") if form == "csv" else (export_psych_ds, "psych-ds")
+    files = [str(path) for path in write(study, out or study / usual, mode=mode, database_url=database)]
     done({"files": files}, as_json, "\n".join(files))

@@ -1,9 +1,8 @@
 """What the researcher takes away: tables of the export, the report, a backup."""
 
 import time
-from collections.abc import Iterator
 from pathlib import Path
-from typing import BinaryIO
+from typing import IO
 
 from fastapi import APIRouter, Request, Response
 from fastapi.responses import FileResponse, StreamingResponse
@@ -14,28 +13,30 @@ from study_server.admin_door import Unlocked
 from study_server.backup import file_name, no_backup, opened_backup
 from study_server.export import ROWS, table_text
 from study_server.export_rows import Source
+from study_server.psych_ds import write_zip
 from study_server.sessions import release_s
 from study_server.site import Mode, sorry
+from study_server.spool import pieces_of, spooled
 
 router = APIRouter()
 
-PIECE_BYTES = 1 << 18
+
+@router.get("/export/psych-ds.zip")
+def download_dataset(request: Request, _: Unlocked, mode: Mode | None = None) -> Response:
+    """The export as a Psych-DS dataset: of `mode`, or else of the mode that is served."""
+    return spooled(request, "psych-ds.zip", "application/zip", mode, write_zip)
 
 
 @router.get("/export/{table}.csv")
-def download(request: Request, site: Unlocked, table: str, mode: Mode | None = None) -> Response:
-    """One table of the export, sent as it is read: of `mode`, or else of the mode that is served."""
+def download(request: Request, _: Unlocked, table: str, mode: Mode | None = None) -> Response:
+    """One table of the export: of `mode`, or else of the mode that is served."""
     if table not in ROWS:
         return sorry(request, 404, "There is no such table.")
 
-    chosen = mode or site.mode
+    def write(file: IO[bytes], source: Source) -> None:
+        file.writelines(piece.encode() for piece in table_text(table, source))
 
-    def pieces() -> Iterator[str]:
-        with site.database.reading() as connection:
-            yield from table_text(table, Source(connection, site.study, chosen, site.salt))
-
-    disposition = f'attachment; filename="{table}{"" if chosen == "live" else f"-{chosen}"}.csv"'
-    return StreamingResponse(pieces(), media_type="text/csv", headers={"Content-Disposition": disposition})
+    return spooled(request, f"{table}.csv", "text/csv", mode, write)
 
 
 @router.get("/backup")
@@ -49,13 +50,6 @@ def backup(request: Request, site: Unlocked) -> Response:
         return sorry(request, 503, str(problem))
     headers = {"Content-Disposition": f'attachment; filename="{file_name(time.time())}"', "Content-Length": str(size)}
     return StreamingResponse(pieces_of(file), media_type="application/vnd.sqlite3", headers=headers)
-
-
-def pieces_of(file: BinaryIO) -> Iterator[bytes]:
-    """The file's bytes, a few at a time; closed at the end."""
-    with file:
-        while piece := file.read(PIECE_BYTES):
-            yield piece
 
 
 @router.get("/report/{path:path}")

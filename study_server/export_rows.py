@@ -36,10 +36,12 @@ class Source:
     study: BuiltStudy
     mode: Mode
     salt: str
+    now: float = field(default_factory=time.time)
+    """Unix seconds: who is active and who dropped is judged by one moment in all tables."""
 
     def people(self) -> Iterator[RowMapping]:
         """The sessions with their status: the query of the admin page."""
-        query = summaries(self.study.identity, self.mode, time.time(), release_s(self.study))
+        query = summaries(self.study.identity, self.mode, self.now, release_s(self.study))
         yield from self.connection.execute(query.execution_options(yield_per=500)).mappings()
 
     def participant(self, session: RowMapping) -> str:
