@@ -1,3 +1,4 @@
+import contextlib
 import csv
 import io
 import sys
@@ -9,6 +10,7 @@ import pytest
 
 sys.path.insert(0, str(Path(__file__).parents[1]))
 
+from running_survey import KINDS, Running, running_survey
 from study_fixture import write_study
 
 from study_server.app import admin_secret
@@ -26,6 +28,17 @@ def url(study: Path) -> Iterator[str]:
     """The study, served by uvicorn on a free port."""
     with served(study) as address:
         yield address
+
+
+@pytest.fixture(scope="module", params=KINDS)
+def running(request: pytest.FixtureRequest, tmp_path_factory: pytest.TempPathFactory) -> Iterator[Running]:
+    """A study like `study`, served in each of the ways there are to all tests of a file; judged afterwards."""
+    folder = tmp_path_factory.mktemp("running")
+    with contextlib.ExitStack() as stack:
+        is_file = request.param == "sqlite"
+        address = "" if is_file else stack.enter_context(request.getfixturevalue("postgres").new_database())
+        survey = running_survey(request.param, write_study(folder / "study"), folder / "server.log", address)
+        yield stack.enter_context(survey)
 
 
 def downloaded(study: Path, url: str, table: str, mode: str = "") -> list[dict[str, str]]:

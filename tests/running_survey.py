@@ -1,0 +1,46 @@
+"""A study served in each of the ways there are: SQLite, PostgreSQL, and PostgreSQL with two worker processes."""
+
+import contextlib
+import time
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass
+from pathlib import Path
+
+from server_process import server_process
+from stored import sound
+
+from study_server.database import default_url
+from study_server.serve import served
+
+KINDS = ("sqlite", "postgres", "two workers")
+
+
+@dataclass(frozen=True)
+class Running:
+    """A served study: its address, and that of its database."""
+
+    url: str
+    database: str
+
+
+@contextlib.contextmanager
+def running_survey(kind: str, study: Path, log: Path, postgres_url: str = "") -> Iterator[Running]:
+    """The built study, served in one of the `KINDS`; what it holds at the end is judged."""
+    database = postgres_url or default_url(study)
+    if kind == "two workers":
+        with server_process(study, log, database_url=database, workers=2) as server:
+            until(lambda: len(server.workers()) == 2)
+            yield Running(server.url, database)
+        assert "Traceback" not in server.said()
+    else:
+        with served(study, database_url=database) as url:
+            yield Running(url, database)
+    sound(database)
+
+
+def until(condition: Callable[[], bool], seconds: float = 60.0) -> None:
+    """Wait for what is to happen."""
+    end = time.monotonic() + seconds
+    while not condition():
+        assert time.monotonic() < end, "it did not happen"
+        time.sleep(0.01)
