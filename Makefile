@@ -4,12 +4,13 @@ BIN := .venv/bin
 PIP := $(BIN)/pip install --quiet --disable-pip-version-check --constraint constraints.txt
 PORT ?= 8000
 
-.PHONY: help setup gl test-tools study demo test test-long lint docs clean
+.PHONY: help setup gl test-tools study demo test test-long lint docs catalogues clean
 help:
 	@echo "make study      build the thesis's study and serve it at http://127.0.0.1:$(PORT)"
 	@echo "make demo       the same without people: 44 simulated raters, then demo/report/index.html"
 	@echo "make test       every test (test-long: the same with larger counts)"
 	@echo "make lint docs  style and types; the documentation"
+	@echo "make catalogues the survey's texts collected for translation (study_server/locales)"
 	@echo "make clean      remove the virtual environment and what the targets above made, except ratings"
 
 setup: .venv/.ready gl
@@ -64,6 +65,9 @@ lint: setup .venv/.ready-test
 docs: setup .venv/.ready-docs
 	$(BIN)/sphinx-build -q -W -b html docs docs/_build/html
 	@echo "docs/_build/html/index.html"
+
+catalogues: setup
+	$(BIN)/python -m study_server.catalogues
 
 clean:
 	rm -rf .venv node_modules docs/_build build dist demo test-output *.egg-info .pytest_cache .hypothesis .mypy_cache .ruff_cache

@@ -11,7 +11,7 @@ from babel.core import negotiate_locale
 from babel.messages.mofile import write_mo
 from babel.messages.pofile import read_po
 
-from study_server.settings import Survey
+from study_server.settings import Survey, SurveySettings
 
 LOCALES = Path(__file__).parent / "locales"
 
@@ -32,9 +32,9 @@ class Words:
         return catalogue(self.language).ngettext(one, many, n)
 
 
-def words(survey: Survey, language: str) -> Words:
+def words(settings: SurveySettings, language: str) -> Words:
     """The words of a page of this study."""
-    return Words(language, survey.translations.get(language, {}))  # type: ignore[call-overload]
+    return Words(language, settings.own_words(language))
 
 
 @cache

@@ -3,11 +3,12 @@
 import re
 from collections.abc import Collection
 from typing import Any
-from urllib.parse import quote
+from urllib.parse import quote, urlencode
 
+from babel import Locale
 from sqlalchemy import Connection, RowMapping
 
-from study_server import texts
+from study_server import screen_check, texts
 from study_server.language import Words, offered, words
 from study_server.manifest import BuiltStudy
 from study_server.pictures import picture_facts
@@ -26,7 +27,7 @@ def paragraphs(text: str) -> list[str]:
 def consent_page(study: BuiltStudy, mode: str, token: str, language: str, external: External | None) -> dict[str, Any]:
     """Before anything is stored."""
     survey = study.settings.survey
-    say = words(survey, language)
+    say = words(study.settings, language)
     if survey.consent:
         told = paragraphs(say(survey.consent))
     else:
@@ -37,10 +38,17 @@ def consent_page(study: BuiltStudy, mode: str, token: str, language: str, extern
         "contact": say(survey.contact),
         "retention": say(survey.retention),
         "retention_until": survey.retention_until.isoformat() if survey.retention_until else "",
-        "languages": list(offered(survey)),
+        "languages": [language_link(other, external) for other in offered(survey)],
         "phones": survey.phones,
         "external": {} if external is None else external.as_query(),
     }
+
+
+def language_link(language: str, external: External | None) -> dict[str, str]:
+    """How this page is reached in another language by hand; the language's name is as its speakers write it."""
+    query = urlencode({"language": language, **(external.as_query() if external else {})})
+    name = Locale(language).get_display_name() or language
+    return {"code": language, "name": name.capitalize(), "href": f"?{query}"}
 
 
 def shut_page(study: BuiltStudy, mode: str, token: str, language: str, step: str) -> dict[str, Any]:
@@ -60,7 +68,7 @@ def declined_page(study: BuiltStudy, mode: str, token: str, language: str, exter
 
 def frame(study: BuiltStudy, mode: str, token: str, step: str, language: str) -> dict[str, Any]:
     """What every page of a participant has."""
-    title = words(study.settings.survey, language)(study.settings.survey.title or study.title)
+    title = words(study.settings, language)(study.settings.survey.title or study.title)
     return {"step": step, "title": title, "mode": mode, "here": f"/s/{token}", "language": language}
 
 
@@ -68,12 +76,12 @@ def page(connection: Connection, study: BuiltStudy, session: RowMapping) -> dict
     """The page where this session stands."""
     step = str(session["step"])
     survey = study.settings.survey
-    say = words(survey, session["language"])
+    say = words(study.settings, session["language"])
     data = {**frame(study, session["mode"], session["token"], step, session["language"]), "session": session["id"]}
     if step == "about":
         data["fields"] = [asked_about(field.model_dump(mode="json"), say) for field in survey.about]
     elif step == "screen":
-        data["parts"] = list(survey.screen_check)
+        data |= screen_check.page(survey.screen_check)
     elif step == "instructions":
         data["paragraphs"] = instructions(study, say)
         data["practice"] = survey.practice

@@ -2,6 +2,7 @@
 
 import datetime
 from collections.abc import Iterator, Mapping
+from difflib import get_close_matches
 from typing import Annotated, Any, Literal, Self
 
 from pydantic import AfterValidator, Field, model_validator
@@ -26,8 +27,8 @@ def not_a_formula(name: str) -> str:
 CHECK_NAME = "check"
 """The `question` of an instructed item's row in the ratings."""
 
-TEXT_KEYS = ("title", "consent", "contact", "retention", "instructions", "comments", "thanks")
-"""The keys of [survey] that participants read."""
+TEXT_KEYS = ("consent", "contact", "retention", "instructions", "comments", "thanks")
+"""The keys of [survey] that participants read, besides the title."""
 
 Language = Literal["en", "de", "es", "fr"]
 Recorded = Literal["address", "browser"]
@@ -93,7 +94,7 @@ class Survey(Strict):
     title: str = Field("", description="what participants see as the study's name; empty: the study's own title")
     language: Language = Field("en", description="the language this file's texts are written in: en, de, es or fr")
     translations: dict[Language, dict[str, Text]] = Field(
-        {}, description="per further language, text as written here = its translation; the browser's language chooses"
+        {}, description="per further language: text or key = its translation; the browser's language chooses"
     )
     consent: str = Field("", description="shown first, paragraphs separated by an empty line; empty: our own words")
     contact: str = Field("", description="whom participants can write to; shown under the consent text")
@@ -149,8 +150,9 @@ class Survey(Strict):
 
 
 class SurveySettings(Strict):
-    """The tables of study.toml that the survey owns."""
+    """The tables of study.toml that the survey owns, and the study's title, which participants read."""
 
+    title: str = ""
     question: tuple[Question, ...] = Field(min_length=1)
     survey: Survey = Survey()
 
@@ -164,24 +166,44 @@ class SurveySettings(Strict):
 
     @model_validator(mode="after")
     def translated(self) -> Self:
-        """Every translation holds every text of this file: better one language than two on a page."""
-        for language, known in self.survey.translations.items():
-            for key, text in self.texts():
+        """Every translation holds every text of this file, and no other: better one language than two on a page."""
+        needed = {text: key for key, text in self.texts()}
+        for language in self.survey.translations:
+            known = self.own_words(language)
+            for text, key in needed.items():
                 if text not in known:
-                    raise ValueError(
-                        f'survey.translations.{language}: {key} is missing; add a line "{text[:60]}" = "..."'
-                    )
+                    line = key if key in self.named() else f'"{text[:60]}"'
+                    raise ValueError(f'survey.translations.{language}: {key} is missing; add a line {line} = "..."')
+            for text in known:
+                if text not in needed and text not in texts.OURS:
+                    meant = get_close_matches(text, needed, n=1)
+                    mend = f'did you mean "{meant[0][:60]}"?' if meant else "write the text as it stands in this file"
+                    raise ValueError(f'survey.translations.{language}: "{text[:60]}" is no text of this file; {mend}')
         return self
+
+    def named(self) -> dict[str, str]:
+        """The texts that translations may call by their key; long ones would make unwieldy keys themselves."""
+        return {"title": self.survey.title or self.title, **{key: getattr(self.survey, key) for key in TEXT_KEYS}}
+
+    def own_words(self, language: str) -> dict[str, str]:
+        """This file's translations into `language`: text -> its translation."""
+        named = self.named()
+        written: dict[str, str] = self.survey.translations.get(language, {})  # type: ignore[call-overload]
+        return {named.get(key) or key: text for key, text in written.items()}
 
     def texts(self) -> Iterator[tuple[str, str]]:
         """(key, text) of everything a participant reads that stands in this file and is none of our own words."""
-        survey = self.survey
-        found = [(key, getattr(survey, key)) for key in TEXT_KEYS]
+        found = list(self.named().items())
         for asked in self.question:
             found += [(f"question.{asked.name}", text) for text in (asked.text, asked.low, asked.high)]
-        for field in survey.about:
+        for field in self.survey.about:
             found += [(f"about.{field.name}", text) for text in (field.text, *field.choices)]
-        yield from ((key, text) for key, text in found if text and text not in texts.OURS)
+        yield from ((key, text) for key, text in found if is_words(text) and text not in texts.OURS)
+
+
+def is_words(text: str) -> bool:
+    """Whether there is anything to translate: in "18-24" there is not."""
+    return any(map(str.isalpha, text))
 
 
 def check_survey(study_table: Mapping[str, Any], source: str) -> SurveySettings:
@@ -189,5 +211,5 @@ def check_survey(study_table: Mapping[str, Any], source: str) -> SurveySettings:
 
     Raises `BadInput` naming `source`, the key and the nearest valid name.
     """
-    owned = {key: study_table[key] for key in ("question", "survey") if key in study_table}
+    owned = {key: study_table[key] for key in ("title", "question", "survey") if key in study_table}
     return validated(SurveySettings, owned, source)

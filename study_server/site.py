@@ -3,9 +3,11 @@
 import threading
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
+from datetime import date
 from pathlib import Path
 from typing import Annotated, Any, Literal
 
+from babel.dates import format_date
 from babel.numbers import format_decimal
 from fastapi import Depends, Request, Response
 from fastapi.responses import JSONResponse
@@ -27,10 +29,23 @@ environment = Environment(
     loader=FileSystemLoader(HERE / "templates"), autoescape=True, undefined=StrictUndefined, trim_blocks=True,
     lstrip_blocks=True,
 )  # fmt: skip
-environment.add_extension("jinja2.ext.i18n")  # {% trans %}; `answer` brings the words
+environment.add_extension("jinja2.ext.i18n")  # {% trans %}
 environment.policies["ext.i18n.trimmed"] = True
 environment.globals.update(mode="", session=None)  # pages outside a session
 templates = Jinja2Templates(env=environment)
+
+
+@pass_context
+def gettext(context: Context, text: str, **blanks: object) -> str:
+    """`text` in the page's language, its %(blanks)s filled in if there are any."""
+    found = catalogue(context["language"]).gettext(text)
+    return found % blanks if blanks else found
+
+
+@pass_context
+def ngettext(context: Context, one: str, many: str, n: int) -> str:
+    """`one` or `many` in the page's language, as it counts `n`."""
+    return catalogue(context["language"]).ngettext(one, many, n)
 
 
 @pass_context
@@ -39,7 +54,14 @@ def number(context: Context, n: int) -> str:
     return format_decimal(n, locale=context["language"])
 
 
-environment.filters["number"] = number
+@pass_context
+def day(context: Context, iso: str) -> str:
+    """The date `iso` (YYYY-MM-DD) in words: December 31, 2036 in English, 31. Dezember 2036 in German."""
+    return format_date(date.fromisoformat(iso), "long", locale=context["language"])
+
+
+environment.install_gettext_callables(gettext, ngettext)  # type: ignore[attr-defined]
+environment.filters.update(number=number, day=day)
 
 
 @dataclass
@@ -121,9 +143,7 @@ def answer(request: Request, template: str, data: Mapping[str, Any], http_status
     if wants_json(request):
         response: Response = JSONResponse(dict(data), http_status)
     else:
-        in_words = catalogue(language)
-        context = {"language": language, **data, "gettext": in_words.gettext, "ngettext": in_words.ngettext}
-        response = templates.TemplateResponse(request, template, context, http_status)
+        response = templates.TemplateResponse(request, template, {**data, "language": language}, http_status)
     response.headers["Content-Language"] = language
     response.headers["Vary"] = "Accept, Accept-Language"
     return response

@@ -52,6 +52,9 @@ VISIONS = (
     N_("normal"), N_("blurred or otherwise impaired"), N_("colour vision deficiency"), N_("rather not say"),
 )  # fmt: skip
 
+MODES = {"pilot": N_("pilot"), "simulated": N_("simulated")}
+"""Said beside the study's name, unless it is live."""
+
 OURS = frozenset(
     (
         *CONSENT,

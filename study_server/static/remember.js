@@ -18,5 +18,6 @@ try {
 
 async function begun(address) {
   const response = await fetch(address, { headers: { Accept: "application/json" } });
-  return response.ok && !["consent", "done", "withdrawn"].includes((await response.json()).step);
+  const over = ["consent", "done", "screened_out", "withdrawn", "paused", "closed"];
+  return response.ok && !over.includes((await response.json()).step);
 }

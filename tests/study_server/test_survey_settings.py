@@ -57,7 +57,7 @@ def test_errors_name_the_key_and_the_mend(tables: dict[str, object], sentence: s
 def test_the_keys_in_the_instructions_exist(tmp_path: Path, scales: list[int], words: str) -> None:
     questions = [{**QUESTION, "name": f"q{number}", "scale": scale} for number, scale in enumerate(scales)]
     study = load_study(write_study(tmp_path, question=questions))
-    text = " ".join(instructions(study, words_of(study.settings.survey, "en")))
+    text = " ".join(instructions(study, words_of(study.settings, "en")))
     assert f"or with the keys {words}. When" in text
     assert "{" not in text
 
