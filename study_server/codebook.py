@@ -4,6 +4,7 @@ from collections.abc import Callable, Iterator, Mapping
 from dataclasses import replace
 from typing import Any
 
+from study_server import screen_check
 from study_server.cells import cell
 from study_server.columns import (
     CLIENT,
@@ -47,7 +48,8 @@ def participant_columns(study: BuiltStudy) -> dict[str, Column]:
         f"about_{asked.name}": Column(asked.text, values=asked.choices, missing="not answered, or withdrawn")
         for asked in survey.about
     }
-    return PARTICIPANTS | about | {name: CLIENT[name] for name in survey.record}
+    screen = screen_check.columns(survey.screen_check)
+    return PARTICIPANTS | about | screen | {name: CLIENT[name] for name in survey.record}
 
 
 def stimulus_columns(study: BuiltStudy) -> dict[str, Column]:

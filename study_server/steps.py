@@ -7,6 +7,7 @@ from sqlalchemy import Connection, RowMapping, select
 
 from study_server.counts import failed_checks
 from study_server.manifest import BuiltStudy
+from study_server.screen_check import leave_screen
 from study_server.sessions import advance, after_about, expected_and_stored, record, unanswered
 from study_server.settings import Survey
 
@@ -32,12 +33,6 @@ def leave_about(connection: Connection, study: BuiltStudy, session: Session, val
     advance(connection, session, now, step="screened_out" if out else after_about(study), about=told)
 
 
-def leave_screen(connection: Connection, _study: BuiltStudy, session: Session, values: Values, now: float) -> None:
-    """Keeps what the screen check found."""
-    found = {name: value[:100] for name, value in values.items() if name in SCREEN_FACTS}
-    advance(connection, session, now, step="instructions", screen=found)
-
-
 def leave_instructions(connection: Connection, study: BuiltStudy, session: Session, _: Values, now: float) -> None:
     """On to practice, if there is any."""
     advance(connection, session, now, step="practice" if study.settings.survey.practice else "trials")
@@ -52,8 +47,6 @@ def leave_comments(connection: Connection, _study: BuiltStudy, session: Session,
     """Keeps the comment, if there is one."""
     advance(connection, session, now, step="done", comments=values.get("comments", "").strip()[:LONGEST_TEXT] or None)
 
-
-SCREEN_FACTS = ("px_per_mm",)
 
 LEAVE: dict[str, Callable[[Connection, BuiltStudy, Session, Values, float], None]] = {
     "about": leave_about,

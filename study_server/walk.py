@@ -10,6 +10,7 @@ from typing import Any
 import httpx
 
 from fakesss.problem import BadInput
+from study_server import screen_check
 from study_server.raters import Rater
 from study_server.settings import CHECK_NAME
 
@@ -92,7 +93,8 @@ def walk(url: str, rater: Rater, quits_after: int | None, saved: Callable[[], ob
 
 
 def fill_in(rater: Rater, state: dict[str, Any]) -> dict[str, str]:
-    """A form's answers: a program's consent, some choice for each question about the person, comments from a fifth."""
+    """A form's answers: a program's consent, some choice for each question about the person, a screen,
+    comments from a fifth."""
     if state["step"] == "consent":
         return {"simulated": "yes"}  # else these answers could not be told from people's
     if state["step"] == "about":
@@ -100,6 +102,8 @@ def fill_in(rater: Rater, state: dict[str, Any]) -> dict[str, str]:
         fields = rater.study.settings.survey.about
         staying = {field.name: [each for each in field.choices if each not in field.screen_out] for field in fields}
         return {name: str(random.choice(choices or ["-"])) for name, choices in staying.items()}
+    if state["step"] == "screen":
+        return screen_check.simulated(rater.random(8), rater.study.settings.survey.screen_check)
     if state["step"] == "comments" and rater.number % 5 == 0:
         return {"comments": "Some pictures looked alike to me."}
     return {}

@@ -1,36 +1,66 @@
 // Where and how large the picture stands on the screen, and for how long.
 
-// One file pixel on one device pixel, unless the window is too narrow; then CSS shrinks it and drawn_width_px says so.
-// Where layout leaves the picture between two pixels, browsers move it to the nearest; a transform would blur it.
+const GAMUTS = ["rec2020", "p3", "srgb"]; // widest first
+const MOST_MS = 30 * 86_400_000; // the server takes no longer time (answers.py)
+
+// One file pixel on one device pixel, unless the window is too narrow; then CSS shrinks it and `drawn` says so. The picture
+// is moved onto whole device pixels: halfway between two of them, its two edges may be rounded apart.
 export function fitToPixels(image) {
-  if (!image) return;
   image.style.width = `${image.naturalWidth / devicePixelRatio}px`;
+  image.style.left = image.style.top = "0px";
+  const { left, top } = image.getBoundingClientRect();
+  image.style.left = `${offset(left + scrollX)}px`;
+  image.style.top = `${offset(top + scrollY)}px`;
 }
 
-export function display(image) {
+// CSS pixels from `at` to the nearest whole device pixel.
+function offset(at) {
+  return (Math.round(at * devicePixelRatio) - at * devicePixelRatio) / devicePixelRatio;
+}
+
+// Width and height in device pixels.
+export function drawn(image) {
+  const { width, height } = image.getBoundingClientRect();
+  return { drawn_width_px: round(width * devicePixelRatio, 2), drawn_height_px: round(height * devicePixelRatio, 2) };
+}
+
+export function isScaled(image) {
+  const { drawn_width_px, drawn_height_px } = drawn(image);
+  return Math.max(Math.abs(drawn_width_px - image.naturalWidth), Math.abs(drawn_height_px - image.naturalHeight)) > 0.5;
+}
+
+export function screenFacts() {
+  // Desktop browsers count page zoom in innerWidth; pinch zoom is the visual viewport's scale.
+  const zoom = (outerWidth / innerWidth || 1) * (visualViewport?.scale ?? 1);
   return {
     device_pixel_ratio: devicePixelRatio,
-    // Desktop browsers count page zoom in innerWidth; pinch zoom is the visual viewport's scale.
-    zoom: round((outerWidth / innerWidth || 1) * (visualViewport?.scale ?? 1), 3),
-    drawn_width_px: round(image.getBoundingClientRect().width * devicePixelRatio, 2),
+    zoom: round(Math.min(Math.max(zoom, 0.01), 100), 3),
     window_width_px: innerWidth,
     window_height_px: innerHeight,
+    gamut: GAMUTS.find((name) => matchMedia(`(color-gamut: ${name})`).matches) ?? "",
   };
 }
 
-// Time since a picture's first frame, and how much of it the page was hidden or not in front.
+// Time since a picture's first frame, and how much of it the picture could not be seen: the page hidden or not in front,
+// or the picture taken away (`cover`) because it does not fit.
 export class Stopwatch {
-  shownAt = null;
+  shownAt = 0;
   away = 0;
   awaySince = null;
+  isCovered = false;
 
   constructor() {
     for (const name of ["blur", "focus"]) window.addEventListener(name, () => this.look());
     document.addEventListener("visibilitychange", () => this.look());
   }
 
+  cover(isCovered) {
+    this.isCovered = isCovered;
+    this.look();
+  }
+
   look() {
-    const seen = document.visibilityState === "visible" && document.hasFocus();
+    const seen = document.visibilityState === "visible" && document.hasFocus() && !this.isCovered;
     if (seen && this.awaySince !== null) {
       this.away += performance.now() - this.awaySince;
       this.awaySince = null;
@@ -49,13 +79,17 @@ export class Stopwatch {
   }
 
   elapsed() {
-    return round(performance.now() - this.shownAt, 1);
+    return limited(performance.now() - this.shownAt);
   }
 
   lost() {
     const now = this.awaySince === null ? 0 : performance.now() - this.awaySince;
-    return round(this.away + now, 1);
+    return limited(this.away + now);
   }
+}
+
+function limited(ms) {
+  return round(Math.min(Math.max(ms, 0), MOST_MS), 1);
 }
 
 function round(x, digits) {

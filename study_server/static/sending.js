@@ -1,40 +1,51 @@
-// Talking to the server over a network that may be gone for minutes: every request is repeated until it is answered.
+// Talking to the server over a network that may be gone for minutes. An answer is what our server says, granted or refused;
+// everything else (no connection, a time-out, half a reply, a proxy's page, a server in trouble) is tried again.
+const PATIENCE_MS = 30_000;
 const LONGEST_WAIT_MS = 10_000;
+const LONGEST_RETRY_AFTER_MS = 300_000;
 
-// The participant's current page as the server's dict.
-export function state(here, say) {
-  return untilAnswered(() => fetch(here, { headers: { Accept: "application/json" }, cache: "no-store" }), say);
+// {page}: where the session stands, as the server's dict; {refused: sentence}; or {after: ms} to wait at least.
+export function askWhere(here) {
+  return request(here, {}, (reply) => reply.step && { page: reply });
 }
 
-// Send a trial's answers; `body()` is called for each attempt. Resolves to the server's dict, saved or refused.
-export function post(here, body, say) {
-  const send = () =>
-    fetch(`${here}/ratings`, {
-      method: "POST",
-      headers: { "Content-Type": "application/json", Accept: "application/json" },
-      body: JSON.stringify(body()),
-      signal: AbortSignal.timeout(30_000),
-    });
-  return untilAnswered(send, say);
+// {page} that comes next, now that the answers of one trial are on the server's disk; {refused}; or {after}.
+export function send(here, answer) {
+  const headers = { "Content-Type": "application/json" };
+  const how = { method: "POST", headers, body: JSON.stringify(answer), keepalive: true }; // also while the tab is closed
+  return request(`${here}/ratings`, how, (reply) => reply.saved && reply.next && { page: reply.next });
 }
 
-// A refusal (4xx) is an answer; no connection, a time-out or a server in trouble (5xx) is not.
-async function untilAnswered(request, say) {
-  for (let attempt = 1; ; attempt++) {
-    try {
-      const response = await request();
-      if (response.status < 500) return await response.json();
-    } catch {
-      // no connection, a broken one, or half an answer
-    }
-    say("Not saved yet – trying again. Please keep this page open.", true);
-    await backOnlineOr(Math.min(250 * 2 ** attempt, LONGEST_WAIT_MS) * (0.75 + Math.random() / 2));
+async function request(address, how, granted) {
+  try {
+    const headers = { ...how.headers, Accept: "application/json" };
+    const signal = AbortSignal.timeout(PATIENCE_MS);
+    const response = await fetch(address, { ...how, headers, signal, cache: "no-store" });
+    const { status } = response;
+    if (status >= 500 || status === 408 || status === 429) return { after: retryAfter(response) };
+    const reply = await response.json();
+    if (response.ok) return granted(reply) || { after: 0 };
+    return typeof reply.error === "string" ? { refused: reply.error } : { after: 0 };
+  } catch {
+    return { after: 0 };
   }
 }
 
-function backOnlineOr(ms) {
-  return new Promise((resolve) => {
-    setTimeout(resolve, ms);
+// Retry-After is a number of seconds or a date (RFC 9110, 10.2.3).
+function retryAfter(response) {
+  const told = response.headers.get("Retry-After") ?? "";
+  const ms = /^\d+$/.test(told) ? told * 1000 : Date.parse(told) - Date.now();
+  return Math.min(Math.max(ms || 0, 0), LONGEST_RETRY_AFTER_MS);
+}
+
+// Longer after every failure, and not the same for all, lest a whole class comes back at one moment; at once when the
+// network is back, but never before the server wants it.
+export async function pause(failures, after) {
+  const wait = Math.min(250 * 2 ** failures, LONGEST_WAIT_MS) * (0.75 + Math.random() / 2);
+  const asked = new Promise((resolve) => setTimeout(resolve, after));
+  await new Promise((resolve) => {
+    setTimeout(resolve, wait);
     window.addEventListener("online", resolve, { once: true });
   });
+  await asked;
 }

@@ -1,135 +1,149 @@
-// One trial after another: shows the picture that the server says is due, times and sends the answers, and goes on
-// when the server has them on disk. The server holds the position; this page only follows it.
-import { Damaged, picture } from "/static/pictures.js";
-import { Stopwatch, display, fitToPixels } from "/static/screen.js";
-import { post, state as fetchState } from "/static/sending.js";
+// One trial after another. The server holds the position; the participant may be a few answers ahead of what it has saved,
+// and those are in the outbox.
+import { Delivery } from "/static/delivery.js";
+import { Outbox, newName } from "/static/outbox.js";
+import { keepOnly, picture } from "/static/pictures.js";
+import { Questions } from "/static/questions.js";
+import { Stopwatch } from "/static/screen.js";
+import { Stage } from "/static/stage.js";
+
+const LONG_MS = 1_000; // waiting for the server: from here on the page says why nothing happens
 
 const form = document.getElementById("trial");
-const stage = document.getElementById("stage");
 const next = document.getElementById("next");
-const saved = document.getElementById("saved");
-const questions = [...form.querySelectorAll(".question")];
+const status = document.getElementById("saved");
+const words = form.dataset;
+const step = document.body.className;
+
 const watch = new Stopwatch();
-const firstStep = document.body.className;
+const stage = new Stage(document.getElementById("stage"), words, (isCovered) => watch.cover(isCovered));
+const template = document.getElementById("question");
+const questions = new Questions(document.getElementById("questions"), template, next, () => watch.elapsed());
+const outbox = new Outbox(words.here, putElsewhere);
+const delivery = new Delivery(words.here, step, outbox, { heard: proceed, refused, lost: leave });
 
-let trial = null;  // the server's dict of the trial on screen; null while there is none to answer
-let rtMs = [];
+let trial = null; // the server's dict of the trial on screen, or on its way there; null: the answer was given
+let isAnswerable = false;
+let answeredAt = 0;
+let hasAnswered = false; // on this page, or on an earlier one whose answers were still unsaved
+let refusal = "";
 
-window.addEventListener("pageshow", (event) => event.persisted && location.reload());  // back: the server knows where
-window.addEventListener("resize", () => fitToPixels(stage.querySelector("img")));
-form.addEventListener("change", chosen);
+window.addEventListener("pageshow", (event) => event.persisted && location.reload()); // back: the server knows where
+window.addEventListener("beforeunload", (event) => outbox.isOnlyInMemory && event.preventDefault());
 form.addEventListener("submit", submit);
-document.addEventListener("keydown", digit);
-follow(await fetchState(form.dataset.here, say));
+deliver();
 
-// Go where the server says. A step that is not of this page is a page of its own.
-async function follow(state) {
-  if (state.step !== firstStep) return location.replace(form.dataset.here);
-  document.getElementById("count").textContent = `${state.practice ? "Practice " : ""}${state.trial} of ${state.trials}`;
-  document.getElementById("progress").value = state.trial - 1;
-  stage.style.minHeight = `${state.picture.height / devicePixelRatio}px`;  // words take the picture's place
-  const image = await undamaged(state.picture);
-  for (const radio of form.querySelectorAll("input")) radio.checked = false;
-  rtMs = questions.map(() => null);
-  stage.replaceChildren(image);
-  stage.style.minHeight = "";
-  fitToPixels(image);
+// Bring what is in the outbox to the server, then follow it.
+async function deliver() {
+  const delivered = delivery.run();
+  proceed();
+  await delivered;
+  proceed();
+}
+
+function putElsewhere(isGone) {
+  if (isGone) delivery.isStale = true;
+  if (!trial) deliver();
+}
+
+function proceed() {
+  if (delivery.page) goOn(delivery.page);
+  tell();
+}
+
+// Go where the server says, as far as there is nothing to do here. A step that is not of this page is a page of its own.
+function goOn(page) {
+  if (page.step !== step) return delivery.isRunning ? undefined : leave();
+  if (isAnswerable) fetchAhead(page);
+  if (trial) return;
+  trial = following(page);
+  if (trial) show(trial);
+  else setTimeout(tell, LONG_MS);
+}
+
+// Once the picture that is looked at is there, the next ones; those that fail are asked for again when they are due.
+function fetchAhead(page) {
+  const coming = page.ahead.map((each) => each.picture);
+  keepOnly(new Set([trial, page, ...page.ahead].map((each) => each.picture.url)));
+  for (const facts of coming) picture(facts).catch(() => {});
+}
+
+// The first trial that has no answer, if it may be shown now: it is due, or only so far ahead as the study allows.
+function following(page) {
+  if (delivery.isStale) return null;
+  const answered = new Set(outbox.answers().map(({ place }) => place));
+  const first = [page, ...page.ahead].find(({ place }) => !answered.has(place));
+  const mayRunAhead = answered.size <= page.unsaved_ahead && !outbox.isOnlyInMemory;
+  return first && (first.place === page.place || mayRunAhead) ? first : null;
+}
+
+async function show({ picture: facts, questions: asked, trial: number }) {
+  const { practice, trials, scaled_pictures } = delivery.page;
+  const sentence = practice ? words.practiceCount : words.count;
+  document.getElementById("count").textContent = sentence.replace("{trial}", number).replace("{trials}", trials);
+  document.getElementById("progress").value = number - 1;
+  questions.ask(asked);
+  questions.close({ hide: true });
+  stage.isShrinkingRefused = scaled_pictures === "refuse";
+  trial = { ...trial, sha256: await stage.show(facts), submission: newName() };
   await watch.start();
-  trial = { ...state, submission: newName(), sha256: image.dataset.sha256 };
-  for (const question of questions) question.disabled = false;
+  isAnswerable = true;
+  questions.open();
   next.disabled = false;
-  refreshNext();
-  focusOn(0);
-  for (const next of state.ahead) picture(next.picture).catch(() => {});  // asked for again when it is due
+  questions.focusOn(0);
+  fetchAhead(delivery.page);
 }
 
-// The picture, however long it takes; a picture that is not exactly the right one is never shown.
-async function undamaged(facts) {
-  for (let attempt = 1; ; attempt++) {
-    try {
-      return await picture(facts);
-    } catch (error) {
-      const what = error instanceof Damaged ? "The picture did not arrive as it was made" : "The picture could not be loaded";
-      const words = Object.assign(document.createElement("p"), { id: "waiting" });
-      words.setAttribute("role", "alert");
-      words.textContent = `${what}, so it is not shown. Trying again …`;
-      if (attempt > 4) words.textContent += " If this goes on, please tell the person who invited you; nothing is lost.";
-      stage.replaceChildren(words);
-      await new Promise((resolve) => setTimeout(resolve, Math.min(500 * 2 ** attempt, 10_000)));
-    }
-  }
-}
-
-function chosen(event) {
-  const index = questions.indexOf(event.target.closest(".question"));
-  rtMs[index] = watch.elapsed();
-  refreshNext();
-}
-
-// Keys 1-9 and 0 for ten answer the question that has the focus, else the first open one; the focus moves on.
-function digit(event) {
-  if (!trial || event.ctrlKey || event.metaKey || event.altKey || !/^[0-9]$/.test(event.key)) return;
-  const focused = questions.findIndex((question) => question.contains(document.activeElement));
-  const index = focused >= 0 ? focused : rtMs.indexOf(null);
-  const radio = index < 0 ? null : questions[index].querySelector(`input[value="${Number(event.key) || 10}"]`);
-  if (!radio) return;
+function submit(event) {
   event.preventDefault();
-  radio.checked = true;
-  radio.dispatchEvent(new Event("change", { bubbles: true }));
-  focusOn(index + 1);
-}
-
-// Focus on a question's answer, or its first step; past the last question on Next.
-function focusOn(index) {
-  const question = questions[index];
-  const target = question ? (question.querySelector("input:checked") ?? question.querySelector("input")) : next;
-  target.focus({ preventScroll: index === 0 });
-}
-
-function refreshNext() {
-  next.setAttribute("aria-disabled", rtMs.includes(null));
-}
-
-async function submit(event) {
-  event.preventDefault();
-  if (!trial) return;  // a second click while the first one is being saved, or before the picture is there
-  const open = rtMs.indexOf(null);
+  if (!isAnswerable || stage.isCovered) return; // a second click, or nothing to be seen
+  const open = questions.firstOpen;
   if (open >= 0) {
-    if (rtMs.some((ms) => ms !== null)) say("Please answer every question.");
-    return focusOn(open);
+    if (!questions.isUntouched) say(words.incomplete);
+    return questions.focusOn(open);
   }
-  const answered = trial;
+  outbox.put(filledIn(trial));
   trial = null;
+  isAnswerable = false;
+  refusal = "";
+  answeredAt = performance.now();
   next.setAttribute("aria-disabled", true);
-  say("Saving …");
-  const reply = await post(form.dataset.here, () => filledIn(answered), say);
-  say(reply.error ?? "Saved", Boolean(reply.error));
-  for (const question of questions) question.disabled = true;
-  await follow(reply.next ?? (await fetchState(form.dataset.here, say)));
+  questions.close({ hide: false });
+  deliver();
 }
 
-// What is sent: made anew for every attempt, since time goes on; the submission's name stays.
-function filledIn(answered) {
-  const answers = questions.map((question, i) => ({
-    question: question.dataset.name,
-    rating: Number(question.querySelector("input:checked").value),
-    rt_ms: rtMs[i],
-  }));
+function filledIn({ place, submission, sha256 }) {
   return {
-    place: answered.place,
-    submission: answered.submission,
-    stimulus_sha256: answered.sha256,
+    place,
+    submission,
+    stimulus_sha256: sha256,
     since_shown_ms: watch.elapsed(),
-    answers,
-    display: { ...display(stage.querySelector("img")), focus_lost_ms: watch.lost() },
+    answers: questions.answers(),
+    display: { ...stage.display(), focus_lost_ms: watch.lost() },
   };
 }
 
-function newName() {
-  return Array.from(crypto.getRandomValues(new Uint8Array(16)), (byte) => byte.toString(16).padStart(2, "0")).join("");
+function refused(sentence) {
+  refusal = sentence;
 }
 
-function say(words, trouble = false) {
-  saved.textContent = words;
-  saved.className = trouble ? "trouble" : "";
+function leave() {
+  location.replace(words.here);
+}
+
+// Nothing that is not so: "Saved" only if the server has everything.
+function tell() {
+  const unsaved = outbox.answers().length;
+  hasAnswered ||= unsaved > 0;
+  if (refusal) say(refusal, true);
+  else if (delivery.isFailing && unsaved) say((trial ? words.unsaved : words.stopped).replace("{n}", unsaved), true);
+  else if (delivery.isFailing) say(words.unreachable, true);
+  else if (unsaved && !trial && performance.now() - answeredAt >= LONG_MS) say(words.waiting);
+  else if (unsaved) say(words.saving);
+  else if (hasAnswered) say(words.saved);
+}
+
+function say(sentence, isTrouble = false) {
+  if (status.textContent !== sentence) status.textContent = sentence; // said anew it would be read aloud anew
+  status.className = isTrouble ? "trouble" : "";
 }

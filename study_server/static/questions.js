@@ -1,0 +1,101 @@
+// The questions under a picture: built anew for each trial, answered by mouse, touch or keys, each choice timed.
+
+export class Questions {
+  #fieldsets = [];
+  #asked = [];
+  #rtMs = [];
+
+  // `place` holds the fieldsets, `template` is one; `next` is the button after them; `elapsed()` the time since the
+  // picture's first frame.
+  constructor(place, template, next, elapsed) {
+    Object.assign(this, { place, template, next, elapsed });
+    place.addEventListener("change", (event) => this.#chosen(event.target));
+    document.addEventListener("keydown", (event) => this.#digit(event));
+  }
+
+  // Put questions {name, text, scale, low, high} on the page, closed until the picture is there.
+  ask(questions) {
+    this.#asked = questions;
+    this.#rtMs = questions.map(() => null);
+    this.#fieldsets = questions.map((question, number) => this.#fieldset(question, number));
+    this.place.replaceChildren(...this.#fieldsets);
+    this.#refreshNext();
+  }
+
+  #fieldset({ text, scale, low, high }, number) {
+    const fieldset = this.template.content.firstElementChild.cloneNode(true);
+    fieldset.querySelector("legend").textContent = text;
+    fieldset.querySelectorAll(".ends span").forEach((end, i) => (end.textContent = i ? high : low));
+    const label = fieldset.querySelector("label");
+    for (let step = 1; step <= scale; step++) {
+      const choice = label.cloneNode(true);
+      const radio = choice.querySelector("input");
+      Object.assign(radio, { name: `question-${number}`, value: step });
+      choice.querySelector("span").textContent = step;
+      if (step === 1 || step === scale) radio.setAttribute("aria-label", `${step}, ${step === 1 ? low : high}`);
+      label.before(choice);
+    }
+    label.remove();
+    return fieldset;
+  }
+
+  get isOpen() {
+    return this.#fieldsets.some((fieldset) => !fieldset.disabled);
+  }
+
+  open() {
+    for (const fieldset of this.#fieldsets) fieldset.disabled = false;
+  }
+
+  // `hide`: out of sight as well. Otherwise what was answered stays to be seen while it is being saved.
+  close({ hide }) {
+    this.place.inert = !hide;
+    for (const fieldset of this.#fieldsets) fieldset.disabled = hide;
+  }
+
+  // The first question without an answer; -1 if there is none.
+  get firstOpen() {
+    return this.#rtMs.indexOf(null);
+  }
+
+  get isUntouched() {
+    return this.#rtMs.every((ms) => ms === null);
+  }
+
+  answers() {
+    return this.#asked.map(({ name }, i) => ({
+      question: name,
+      rating: Number(this.#fieldsets[i].querySelector("input:checked").value),
+      rt_ms: this.#rtMs[i],
+    }));
+  }
+
+  // Focus on a question's answer, or its first step; past the last question on Next.
+  focusOn(index) {
+    const fieldset = this.#fieldsets[index];
+    const target = fieldset ? (fieldset.querySelector("input:checked") ?? fieldset.querySelector("input")) : this.next;
+    target.focus({ preventScroll: index === 0 });
+  }
+
+  #chosen(radio) {
+    this.#rtMs[this.#fieldsets.indexOf(radio.closest("fieldset"))] = this.elapsed();
+    this.#refreshNext();
+  }
+
+  // Keys 1-9 and 0 for ten answer the question that has the focus, else the first open one; the focus moves on.
+  #digit(event) {
+    if (!this.isOpen || event.ctrlKey || event.metaKey || event.altKey || !/^[0-9]$/.test(event.key)) return;
+    const focused = this.#fieldsets.findIndex((fieldset) => fieldset.contains(document.activeElement));
+    const index = focused >= 0 ? focused : this.firstOpen;
+    const radio = this.#fieldsets[index]?.querySelector(`input[value="${Number(event.key) || 10}"]`);
+    if (!radio) return;
+    event.preventDefault();
+    radio.checked = true;
+    this.#chosen(radio);
+    this.focusOn(index + 1);
+  }
+
+  #refreshNext() {
+    this.next.setAttribute("aria-disabled", this.#rtMs.includes(null));
+  }
+}
