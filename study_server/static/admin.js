@@ -51,7 +51,7 @@ function closeDoor() {
 
 function show(data) {
   data.busiest = Math.max(...data.ratings_by_minute);
-  for (const place of document.querySelectorAll("[data-figure]")) say(place, valueAt(data, place.dataset.figure) ?? "–");
+  for (const place of document.querySelectorAll("[data-figure]")) say(place, told(place.dataset.figure, valueAt(data, place.dataset.figure)));
   for (const table of document.querySelectorAll("[data-rows]")) fill(table, valueAt(data, table.dataset.rows));
   for (const form of document.querySelectorAll("[data-leads-to]")) form.hidden = form.dataset.leadsTo === data.gate.state;
   document.querySelector("[data-gate]").dataset.gate = data.gate.state;
@@ -73,7 +73,7 @@ function fill(table, rows) {
 }
 
 function fillRow(line, row, most) {
-  for (const cell of line.querySelectorAll("[data-key]")) say(cell, row[cell.dataset.key]);
+  for (const cell of line.querySelectorAll("[data-key]")) say(cell, told(cell.dataset.key, row[cell.dataset.key]));
   for (const bar of line.querySelectorAll("[data-bar]")) Object.assign(bar, { max: most, value: row[bar.dataset.bar] });
   for (const box of line.querySelectorAll(".box")) {
     box.setAttribute("viewBox", `0 0 ${most} 10`);
@@ -92,6 +92,11 @@ function speak(data) {
   if (performance.now() - lastSpoken < SPOKEN_EVERY_MS) return;
   lastSpoken = performance.now();
   say(spoken, `${data.started} started, ${data.finished} finished, ${data.active} active, ${data.dropped} dropped; ${data.ratings} ratings.`);
+}
+
+// Times have one decimal, as the server writes them.
+function told(key, value) {
+  return /_s$|_minutes$/.test(key) ? (value?.toFixed(1) ?? "–") : value;
 }
 
 function say(place, words) {
