@@ -20,6 +20,7 @@ from study_server.columns import (
 )
 from study_server.export_rows import Row, Source, wide_name
 from study_server.manifest import BuiltStudy
+from study_server.settings import CHECK_NAME
 
 WIDE = ("session", "participant", "mode", "status", "started_at", "order_row", "language", "checks_failed")
 """What wide.csv says of a session before its answers."""
@@ -35,10 +36,15 @@ def columns_of(table: str, study: BuiltStudy) -> dict[str, Column]:
 
 
 def rating_columns(study: BuiltStudy) -> dict[str, Column]:
-    """The long table: a rating's highest step is that of the study's longest scale."""
-    highest = max(question.scale for question in study.settings.question)
-    known = {name: replace(RATINGS[name], maximum=highest) for name in ("rating", "check_expected")}
-    return RATINGS | known
+    """The long table, with the study's questions; a rating's highest step is that of the longest scale."""
+    questions = study.settings.question
+    names = (*(question.name for question in questions), *([CHECK_NAME] if study.settings.survey.checks else []))
+    highest = max(question.scale for question in questions)
+    return RATINGS | {
+        "question": replace(RATINGS["question"], values=names),
+        "rating": replace(RATINGS["rating"], maximum=highest),
+        "check_expected": replace(RATINGS["check_expected"], maximum=questions[0].scale),
+    }
 
 
 def participant_columns(study: BuiltStudy) -> dict[str, Column]:
