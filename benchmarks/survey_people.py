@@ -64,7 +64,7 @@ class Client:
                 continue
             if status == 303:
                 return await self.request("GET", location)
-            if status < 500:
+            if status < 500 and status != 429:
                 return status, reply
             self.crowd.repeated += 1
             await asyncio.sleep(0.1)

@@ -118,6 +118,10 @@ def not_understood(request: Request, error: Exception) -> Response:
 
 
 def no_page(request: Request, error: Exception) -> Response:
-    """No such address, or not with this method."""
+    """No such address, not with this method, or what an endpoint refuses: in its words where it has any."""
     assert isinstance(error, HTTPException)
-    return sorry(request, error.status_code, N_("There is no such page.") if error.status_code == 404 else error.detail)
+    response = sorry(
+        request, error.status_code, N_("There is no such page.") if error.detail == "Not Found" else error.detail
+    )
+    response.headers.update(error.headers or {})
+    return response

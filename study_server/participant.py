@@ -6,14 +6,16 @@ browser show the same step. A form that arrives for a step already left changes 
 
 import time
 from collections.abc import Collection
-from typing import Any
+from typing import Annotated, Any
 
-from fastapi import APIRouter, Request, Response
+from fastapi import APIRouter, Depends, Request, Response
 from fastapi.responses import JSONResponse, RedirectResponse
 from sqlalchemy import Connection, RowMapping
+from starlette.exceptions import HTTPException
 
 from study_server import answers, pages, sessions, steps
 from study_server.gates import gate
+from study_server.rate_limit import retry_after
 from study_server.site import AtSite, Fields, Site, answer, site_of, sorry, told, visitor_language
 from study_server.texts import N_
 from study_server.tokens import External, belongs_to, is_valid, make_token
@@ -21,7 +23,25 @@ from study_server.tokens import External, belongs_to, is_valid, make_token
 router = APIRouter()
 
 STRANGER = N_("This address does not belong to a participant of this study; please open the link you were given again.")
+TOO_OFTEN = N_("Too much was asked at once; please wait a few seconds and try again. Nothing is lost.")
+CROWD = N_("Many people are starting at this moment; please wait a few seconds and try again.")
 CHANGED = N_("This study has changed since you began; please open the link again.")
+
+
+def own_token(request: Request, site: AtSite, token: str) -> str:
+    """The token in the address: made by this server, and not asked about too often. The database is not needed for it.
+
+    Raises `HTTPException` 404 or 429.
+    """
+    if not is_valid(site.signing_key, token):
+        raise HTTPException(404, STRANGER)
+    wait = site.limits.session(token, request.method)
+    if wait:
+        raise HTTPException(429, TOO_OFTEN, retry_after(wait))
+    return token
+
+
+Token = Annotated[str, Depends(own_token)]
 
 
 @router.get("/")
@@ -34,10 +54,8 @@ def link(request: Request, site: AtSite) -> Response:
 
 
 @router.get("/s/{token}")
-def here(request: Request, site: AtSite, token: str) -> Response:
+def here(request: Request, site: AtSite, token: Token) -> Response:
     """Where this participant is."""
-    if not is_valid(site.signing_key, token):
-        return sorry(request, 404, STRANGER)
     with site.database.reading() as connection:
         session = find(request, connection, token)
         if session is not None and session["study"] != site.study.identity:
@@ -63,10 +81,10 @@ def current_page(
 
 
 @router.post("/s/{token}/consent")
-def consent(request: Request, site: AtSite, token: str, fields: Fields) -> Response:
+def consent(request: Request, site: AtSite, token: Token, fields: Fields) -> Response:
     """Starts the session, once, however often it is sent. A program says `simulated=yes` and is kept apart."""
     external = External.from_query(fields)
-    if not is_valid(site.signing_key, token) or (external and not belongs_to(site.signing_key, token, external)):
+    if external and not belongs_to(site.signing_key, token, external):
         return sorry(request, 404, STRANGER)
     visitor = sessions.Visitor(
         token=token,
@@ -76,16 +94,17 @@ def consent(request: Request, site: AtSite, token: str, fields: Fields) -> Respo
         client=client_facts(request, site.study.settings.survey.record),
     )
     with site.database.writing() as connection:
-        if gate(connection, site.study.identity, site.mode) == "open":
+        if gate(connection, site.study.identity, site.mode) == "open" and not sessions.find(connection, token):
+            wait = site.limits.start(simulated=visitor.mode == "simulated")
+            if wait:
+                raise HTTPException(429, CROWD, retry_after(wait))
             sessions.start(connection, site.study, visitor, time.time())
     return RedirectResponse(f"/s/{token}", 303)
 
 
 @router.post("/s/{token}/declined")
-def declined(request: Request, site: AtSite, token: str, fields: Fields) -> Response:
+def declined(request: Request, site: AtSite, token: Token, fields: Fields) -> Response:
     """Somebody does not agree to take part: thanked, and led back to where they came from. Stores nothing."""
-    if not is_valid(site.signing_key, token):
-        return sorry(request, 404, STRANGER)
     language = visitor_language(request, fields.get("language", ""))
     data = pages.declined_page(site.study, site.mode, token, language, External.from_query(fields))
     return answer(request, "declined.html", data)
@@ -98,7 +117,7 @@ def client_facts(request: Request, asked: Collection[str]) -> dict[str, str]:
 
 
 @router.post("/s/{token}/ratings")
-def ratings(request: Request, site: AtSite, token: str, sent: answers.Posted) -> Response:
+def ratings(request: Request, site: AtSite, token: Token, sent: answers.Posted) -> Response:
     """Stores one picture's answers; replies when they are on disk, with the page that comes next."""
     now = time.time()
     try:
@@ -115,7 +134,7 @@ def ratings(request: Request, site: AtSite, token: str, sent: answers.Posted) ->
 
 
 @router.get("/s/{token}/withdraw")
-def ask_withdraw(request: Request, site: AtSite, token: str) -> Response:
+def ask_withdraw(request: Request, site: AtSite, token: Token) -> Response:
     """Explains what withdrawing means."""
     with site.database.reading() as connection:
         session = find(request, connection, token)
@@ -127,13 +146,13 @@ def ask_withdraw(request: Request, site: AtSite, token: str) -> Response:
 
 
 @router.get("/s/{token}/{step}")
-def back(token: str) -> Response:
+def back(token: Token) -> Response:
     """Somebody opens the address of a form, as after an error: to the page where they are."""
     return RedirectResponse(f"/s/{token}", 303)
 
 
 @router.post("/s/{token}/withdraw")
-def withdraw(request: Request, site: AtSite, token: str, fields: Fields) -> Response:
+def withdraw(request: Request, site: AtSite, token: Token, fields: Fields) -> Response:
     """Deletes what this participant said; asked for twice, because it cannot be undone."""
     with site.database.writing() as connection:
         session = find(request, connection, token, lock=True)
@@ -145,7 +164,7 @@ def withdraw(request: Request, site: AtSite, token: str, fields: Fields) -> Resp
 
 
 @router.post("/s/{token}/{step}")
-def leave_step(request: Request, site: AtSite, token: str, step: str, fields: Fields) -> Response:
+def leave_step(request: Request, site: AtSite, token: Token, step: str, fields: Fields) -> Response:
     """Leaves a step that asks nothing or asks by a form; a step that is not the current one stays as it is."""
     now = time.time()
     with site.database.writing() as connection:

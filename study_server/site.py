@@ -19,6 +19,7 @@ from starlette.exceptions import HTTPException
 from study_server.database import Database
 from study_server.language import catalogue, negotiated
 from study_server.manifest import BuiltStudy
+from study_server.rate_limit import Limits
 from study_server.texts import N_
 from study_server.throttle import Throttle
 
@@ -92,6 +93,7 @@ class Site:
     admin_secret: str
     reporter: Reporter | None = None
     throttle: Throttle = field(default_factory=Throttle)
+    limits: Limits = field(default_factory=Limits)
 
 
 def site_of(request: Request) -> Site:
