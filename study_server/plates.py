@@ -39,7 +39,7 @@ RED_STEP = 0.16
 """Half the difference between figure and ground in linear sRGB red; CIELAB difference about 40."""
 
 NOISE = (0.5, 1.5)
-"""Each dot's luminance is its colour's times a factor drawn evenly from here."""
+"""Each dot's luminance is its colour's times a factor from here; figure and ground have the same ones, shuffled."""
 
 RADIUS = 160.0
 """Of a plate, in its own units, at which it is also shown: CSS px."""
@@ -116,7 +116,9 @@ def dots(index: int) -> Dots:
     centres, radii = packed(random)
     figure = distance_to_number(plate.number, centres) < STROKE
     of_figure, of_ground = colours(plate.cone)
-    rgb = np.where(figure[:, None], of_figure, of_ground) * random.uniform(*NOISE, (len(radii), 1))
+    rgb = np.where(figure[:, None], of_figure, of_ground)
+    for part in (figure, ~figure):
+        rgb[part] *= random.permutation(np.linspace(*NOISE, int(part.sum())))[:, None]
     return Dots(centres, radii, figure, np.clip(rgb, 0, 1))
 
 
