@@ -1,10 +1,12 @@
+import json
 import shutil
 import sys
 from collections.abc import Callable, Iterator
 from pathlib import Path
+from typing import Any
 
 import pytest
-from playwright.sync_api import Browser, BrowserContext, Page, sync_playwright
+from playwright.sync_api import Browser, BrowserContext, Page, Playwright, sync_playwright
 
 sys.path.insert(0, str(Path(__file__).parents[1]))
 
@@ -25,20 +27,54 @@ QUIET = [
 
 
 @pytest.fixture(scope="session")
-def launch() -> Iterator[Callable[..., Browser]]:
-    """Starts a real headless Chromium with further switches; without one the tests fail: they would show nothing."""
+def chromium() -> str:
+    """Where the browser is; without one the tests fail: they would show nothing."""
     path = next(filter(None, map(shutil.which, CHROMIUM)), None)
     assert path, f"no browser found: install one of {', '.join(CHROMIUM)}"
+    return path
+
+
+@pytest.fixture(scope="session")
+def driver() -> Iterator[Playwright]:
+    """What drives browsers."""
     with sync_playwright() as playwright:
-        yield lambda *switches: playwright.chromium.launch(executable_path=path, args=[*QUIET, *switches])
+        yield playwright
+
+
+@pytest.fixture(scope="session")
+def launch(driver: Playwright, chromium: str) -> Callable[..., Browser]:
+    """Starts a real headless Chromium with further switches."""
+    return lambda *switches: driver.chromium.launch(executable_path=chromium, args=[*QUIET, *switches])
+
+
+@pytest.fixture
+def launch_with(driver: Playwright, chromium: str, tmp_path: Path) -> Iterator[Callable[..., BrowserContext]]:
+    """The same for somebody who has made settings (Chromium's Preferences, nested); in a window of its own size."""
+    started: list[BrowserContext] = []
+
+    def start(preferences: dict[str, Any], *switches: str) -> BrowserContext:
+        folder = tmp_path / f"profile-{len(started)}"
+        (folder / "Default").mkdir(parents=True)
+        (folder / "Default" / "Preferences").write_text(json.dumps(preferences), encoding="utf-8")
+        arguments = [*QUIET, *switches]
+        started.append(
+            driver.chromium.launch_persistent_context(
+                folder, executable_path=chromium, args=arguments, no_viewport=True
+            )
+        )
+        return started[-1]
+
+    yield start
+    for context in started:
+        context.close()
 
 
 @pytest.fixture(scope="session")
 def browser(launch: Callable[..., Browser]) -> Iterator[Browser]:
     """One browser for all tests that need no switches of their own."""
-    chromium = launch()
-    yield chromium
-    chromium.close()
+    plain = launch()
+    yield plain
+    plain.close()
 
 
 @pytest.fixture
