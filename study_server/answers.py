@@ -47,7 +47,7 @@ class Posted(Strict):
     """One picture's answers. Times are differences, because a participant's clock may be hours off."""
 
     place: Annotated[int, Field(ge=0, le=100_000)]
-    submission: Annotated[str, Field(min_length=8, max_length=64)] = Field(description="the same on every retry")
+    submission: Annotated[str, Field(pattern="^[!-~]{8,64}$")] = Field(description="the same on every retry")
     stimulus_sha256: Sha256 = Field(description="computed in the browser from the bytes it drew")
     since_shown_ms: Milliseconds = Field(description="from the picture's first frame to this attempt to send")
     answers: Annotated[tuple[Answer, ...], Field(max_length=100)]

@@ -16,6 +16,7 @@ from fastapi import FastAPI
 from fakesss.problem import BadInput
 from study_server.announcement import announcement
 from study_server.app import create_app
+from study_server.prompt import PromptProtocol
 from study_server.site import Mode
 from study_server.workers import run_workers
 
@@ -104,6 +105,7 @@ def running(app: FastAPI, port: int = 0) -> Iterator[str]:
 def uvicorn_settings(proxies: Sequence[str] = ()) -> dict[str, Any]:
     """No access log: addresses hold the participants' tokens. Forwarded headers only from `proxies`."""
     return {
+        "http": PromptProtocol,
         "access_log": False,
         "log_level": "warning",
         "proxy_headers": bool(proxies),

@@ -34,6 +34,7 @@ Language = Literal["en", "de", "es", "fr"]
 Recorded = Literal["address", "browser"]
 ScreenPart = Literal["card", "wedge", "plates"]
 Code = Annotated[str, Field(max_length=100)]
+Origin = Annotated[str, Field(pattern=r"^https?://(\*\.)?[A-Za-z0-9.-]+(:\d+)?$")]
 Name = Annotated[str, Field(min_length=1, max_length=60), AfterValidator(not_a_formula)]
 
 
@@ -134,6 +135,9 @@ class Survey(Strict):
     completion_code: Code = Field("", description="the same code for everybody; empty: each gets a random one")
     return_url: Annotated[str, Field(pattern=r"^(https?://\S+)?$")] = Field(
         "", description="where the last page leads, {code} filled in; empty: to Prolific for who came from there"
+    )
+    frame_ancestors: tuple[Origin, ...] = Field(
+        (), description='sites that may show the survey in a frame of theirs, as "https://lab.example"; []: none'
     )
     prolific: Prolific = Field(Prolific(), description="separate completion codes for those who come from Prolific")
     release_after_minutes: Annotated[float, Field(gt=0, le=10_080)] = Field(

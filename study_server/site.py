@@ -108,30 +108,31 @@ AtSite = Annotated[Site, Depends(site_of)]
 async def posted_fields(request: Request) -> dict[str, str]:
     """A form's fields, posted by a browser's form or as a JSON object of strings.
 
-    Raises `HTTPException` 400 for a body that is no JSON, 422 for text that no file could hold.
+    Raises `HTTPException` 400 for a body that is no JSON, 422 for text that not every database can hold.
     """
     if request.headers.get("content-type", "").startswith("application/json"):
         try:
             data = await request.json() if await request.body() else {}
         except (ValueError, RecursionError):
             raise HTTPException(400, "The body is not JSON.") from None
-        fields = {str(key): str(value) for key, value in data.items()} if isinstance(data, dict) else {}
-        if not is_text("".join((*fields, *fields.values()))):
-            raise HTTPException(422, "The body holds half letters (lone surrogates).")
-        return fields
-    return {key: value for key, value in (await request.form()).items() if isinstance(value, str)}
+        items = data.items() if isinstance(data, dict) else ()
+        fields = {key: str(value) for key, value in items if isinstance(value, (str, int, float))}
+    else:
+        fields = {key: value for key, value in (await request.form()).items() if isinstance(value, str)}
+    if not is_text("".join((*fields, *fields.values()))):
+        raise HTTPException(422, "The body holds what is no text: half letters (lone surrogates), or NUL.")
+    return fields
 
 
 Fields = Annotated[dict[str, str], Depends(posted_fields)]
 
 
 def is_text(text: str) -> bool:
-    """Whether `text` can be written as UTF-8: JSON's escapes can spell halves of letters."""
+    """Whether `text` can be stored: JSON's escapes can spell halves of letters, and PostgreSQL has no place for NUL."""
     try:
-        text.encode()
+        return b"\0" not in text.encode()
     except UnicodeEncodeError:
         return False
-    return True
 
 
 def wants_json(request: Request) -> bool:
