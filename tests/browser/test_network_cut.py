@@ -6,6 +6,7 @@ from pathlib import Path
 import pytest
 from playwright.sync_api import BrowserContext, Page, Route, expect
 from steps import answerable, rate, ratings_by_trial, to_trials
+from trial_pages import saved
 
 from study_server.serve import served
 
@@ -16,12 +17,11 @@ def test_offline_for_a_while(page: Page, context: BrowserContext, url: str, stud
     to_trials(page, url)
     context.set_offline(True)
     rate(page, "35")
+    answerable(page, "2 of 3")  # one goes on meanwhile
     expect(page.locator("#saved")).to_contain_text("Not saved yet")
-    page.keyboard.press("7")  # answers are closed while they are being sent
     page.wait_for_timeout(1000)
     context.set_offline(False)
-    answerable(page, "2 of 3")
-    expect(page.locator("#saved")).to_have_text("Saved")
+    saved(page)
     assert ratings_by_trial(study)[1] == ("3", "5")
 
 
@@ -38,7 +38,7 @@ def test_the_reply_is_lost_but_not_the_answer(page: Page, url: str, study: Path)
 
     page.route("**/ratings", lose_reply)
     rate(page, "62")
-    answerable(page, "2 of 3")
+    saved(page)
     assert len(lost) == 2
     assert ratings_by_trial(study) == {1: ("6", "2"), 2: ("", ""), 3: ("", "")}
 
@@ -51,7 +51,7 @@ def test_the_server_restarts_in_the_middle(page: Page, study: Path) -> None:
     expect(page.locator("#saved")).to_contain_text("Not saved yet")
     time.sleep(0.5)
     with served(study, port=port):
-        answerable(page, "2 of 3")
+        saved(page)
         assert ratings_by_trial(study)[1] == ("1", "7")
 
 
@@ -69,4 +69,5 @@ def test_a_slow_server_is_waited_for_and_impatience_does_no_harm(page: Page, url
         for _ in range(5):
             page.keyboard.press("Enter")
         answerable(page, count)
+    saved(page)
     assert ratings_by_trial(study) == {1: ("1", "1"), 2: ("2", "2"), 3: ("", "")}

@@ -11,6 +11,7 @@ from PIL import Image
 from playwright.sync_api import Browser, Page, Route, expect
 from steps import answerable, rate, rows, to_practice, to_trials
 from study_fixture import draw_disc
+from trial_pages import saved
 
 from study_server.manifest import load_study
 
@@ -43,7 +44,7 @@ def test_a_window_too_narrow_is_seen_in_the_data(browser: Browser, url: str, stu
     page = context.new_page()
     to_trials(page, url)
     rate(page, "44")
-    answerable(page, "2 of 3")
+    saved(page)
     assert float(rows(study)[0]["drawn_width_px"]) < 180
     context.close()
 

@@ -3,7 +3,7 @@
 from pathlib import Path
 from typing import Any
 
-from playwright.sync_api import Page
+from playwright.sync_api import Page, expect
 from steps import answerable
 from study_fixture import write_study
 from survey_client import Participant
@@ -33,3 +33,8 @@ def open_trials(page: Page, url: str, count: str = "1 of 6") -> str:
     page.goto(address)
     answerable(page, count)
     return address
+
+
+def saved(page: Page) -> None:
+    """Wait until the server has every answer that was given on this page."""
+    expect(page.locator("#saved")).to_have_text("Saved", timeout=20_000)
