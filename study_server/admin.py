@@ -4,7 +4,7 @@ import time
 from typing import Any, get_args
 
 from fastapi import APIRouter, Request, Response
-from fastapi.responses import RedirectResponse
+from fastapi.responses import JSONResponse, RedirectResponse
 from sqlalchemy import Connection
 
 from study_server import counts, gates, happenings
@@ -101,7 +101,7 @@ def change_gate(request: Request, site: Unlocked, fields: Fields) -> Response:
             return ask_to_close(request, site, active)
         gates.set_gate(connection, *which, state, now)
         standing = gates.standing(connection, *which)
-    return answer(request, "admin.html", standing) if wants_json(request) else RedirectResponse("/admin", 303)
+    return JSONResponse(standing) if wants_json(request) else RedirectResponse("/admin", 303)
 
 
 def ask_to_close(request: Request, site: Site, active: int) -> Response:

@@ -33,7 +33,9 @@ def file_name(now: float) -> str:
 
 def no_backup(url: URL) -> str:
     """What to do with PostgreSQL instead, in a sentence with the command: it asks for the password."""
-    shown = url.set(drivername="postgresql", password=None).render_as_string()
+    query = {name: value for name, value in url.query.items() if name != "password"}
+    open_url = URL.create("postgresql", url.username, None, url.host, url.port, url.database, query)
+    shown = open_url.render_as_string()
     return f"{shown}: is PostgreSQL's to copy; run: pg_dump --format=custom --file=ratings.dump --dbname={shown}"
 
 

@@ -22,7 +22,9 @@ def admin(study: Path, url: str) -> Iterator[httpx.Client]:
         yield client
 
 
-@pytest.mark.parametrize("path", ["/admin", "/admin/export/ratings.csv", "/admin/report/", "/admin/report/x.svg"])
+@pytest.mark.parametrize(
+    "path", ["/admin", "/admin/backup", "/admin/export/ratings.csv", "/admin/report/", "/admin/report/x.svg"]
+)
 def test_nothing_without_the_secret(url: str, path: str) -> None:
     response = httpx.get(f"{url}{path}", headers={**JSON, "Authorization": "Bearer wrong"})
     assert response.status_code == 401
@@ -42,6 +44,20 @@ def test_the_cookie_opens_and_a_forged_one_does_not(url: str, study: Path) -> No
     until, signed = value.split(".")
     for forged in (f"{int(until) + 1}.{signed}", f"{until}.{signed[:-1]}", "x.y", "."):
         assert httpx.get(f"{url}/admin", headers={"Cookie": f"fakesss_admin={forged}"}).status_code == 401
+
+
+def test_logging_out_and_in_is_by_post_from_our_own_pages(url: str, study: Path) -> None:
+    secret = admin_secret(study)
+    with httpx.Client(base_url=url) as browser:
+        browser.post("/admin/login", data={"secret": secret})
+        assert browser.get("/admin/logout").status_code == 405
+        foreign = {"Origin": "https://elsewhere.example"}
+        for path, fields in (("logout", {}), ("login", {"secret": secret}), ("gate", {"state": "closed"})):
+            assert browser.post(f"/admin/{path}", data=fields, headers=foreign).status_code == 403
+        page = browser.get("/admin")
+        assert page.status_code == 200 and page.headers["cache-control"] == "no-store"
+        assert browser.post("/admin/logout").status_code == 303
+        assert browser.get("/admin").status_code == 401
 
 
 def test_guessing_is_told_to_stop_and_locks_nobody_out(url: str, study: Path) -> None:
