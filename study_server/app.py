@@ -1,8 +1,9 @@
 """The web application of one study."""
 
+import contextlib
 import logging
 import os
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from pathlib import Path
 
 from fastapi import FastAPI, Request, Response
@@ -19,6 +20,7 @@ from study_server.adoption import adopt_study
 from study_server.database import Database, default_url, is_writable, open_database, reason, secret, shown_url
 from study_server.gates import gate
 from study_server.manifest import load_study, study_changed
+from study_server.openapi import described
 from study_server.site import HERE, AtSite, Mode, Reporter, Site, sorry
 from study_server.texts import N_
 from study_server.web_safety import WebSafety
@@ -45,7 +47,8 @@ def create_app(
     site = open_site(Path(study_folder), database_url, mode, make_report)
     app = FastAPI(title=site.study.title, docs_url=None, redoc_url=None)
     app.state.site = site
-    app.add_middleware(WebSafety, report_script=report_script)
+    frame_ancestors = site.study.settings.survey.frame_ancestors
+    app.add_middleware(WebSafety, report_script=report_script, frame_ancestors=frame_ancestors)
     app.mount("/static", StaticFiles(directory=HERE / "static"))
     app.get("/health")(health)
     for router in (pictures.router, plates.router, admin.router, participant.router):
@@ -55,6 +58,7 @@ def create_app(
     app.add_exception_handler(RequestValidationError, not_understood)
     app.add_exception_handler(HTTPException, no_page)
     app.add_exception_handler(admin.Locked, admin.ask_secret)
+    app.openapi = described(app)  # type: ignore[method-assign]
     return app
 
 
@@ -68,21 +72,35 @@ def open_site(folder: Path, url: str | None, mode: Mode, make_report: Callable[[
         )
     url = url or default_url(folder)
     database = open_database(url)
-    adopt_study(database, study, shown_url(url))
-    return Site(
-        study=study,
-        database=database,
-        mode=mode,
-        signing_key=f"{secret(database, 'signing_key')} {mode} {study.identity}",
-        salt=secret(database, "salt"),
-        admin_secret=chosen_secret(database),
-        reporter=Reporter(make_report) if make_report else None,
-    )
+    with blaming(url):
+        adopt_study(database, study, shown_url(url))
+        return Site(
+            study=study,
+            database=database,
+            mode=mode,
+            signing_key=f"{secret(database, 'signing_key')} {mode} {study.identity}",
+            salt=secret(database, "salt"),
+            admin_secret=chosen_secret(database),
+            reporter=Reporter(make_report) if make_report else None,
+        )
+
+
+@contextlib.contextmanager
+def blaming(url: str) -> Iterator[None]:
+    """Says that the database at `url` can be opened and not written: its disk is full, or it has just gone."""
+    try:
+        yield
+    except DatabaseError as error:
+        raise BadInput(
+            f"{shown_url(url)}: cannot be written ({reason(error)}); check its disk and its rights"
+        ) from None
 
 
 def admin_secret(study_folder: Path, database_url: str | None = None) -> str:
     """The secret that opens /admin of this study: from FAKESSS_ADMIN_SECRET, or kept in its database."""
-    return chosen_secret(open_database(database_url or default_url(Path(study_folder))))
+    url = database_url or default_url(Path(study_folder))
+    with blaming(url):
+        return chosen_secret(open_database(url))
 
 
 def chosen_secret(database: Database) -> str:
