@@ -9,14 +9,20 @@ import multiprocessing
 import os
 import signal
 import socket
+import sys
 import threading
+import time
 from typing import Any
 
 import uvicorn
 from fastapi import FastAPI
 from uvicorn.supervisors import Multiprocess
 
+from fakesss.problem import BadInput
 from study_server.app import create_app
+
+WAIT_S = 1.0
+"""Between a worker's tries to open its database."""
 
 
 def run_workers(listener: socket.socket, workers: int, settings: dict[str, Any], **app: Any) -> None:
@@ -30,9 +36,24 @@ def run_workers(listener: socket.socket, workers: int, settings: dict[str, Any],
 
 
 def worker_app(**app: Any) -> FastAPI:
-    """The application of one worker, which does not outlive the process that started it."""
+    """The application of one worker, which does not outlive the process that started it.
+
+    One that finds the database gone says so and waits: were it to end, uvicorn would not notice for `START_S`.
+    """
     threading.Thread(target=end_with_parent, daemon=True).start()
-    return create_app(**app)
+    stop = signal.signal(signal.SIGTERM, signal.SIG_DFL)  # uvicorn's way to stop begins with the application
+    said = ""
+    while True:
+        try:
+            created = create_app(**app)
+        except BadInput as problem:
+            if str(problem) != said:
+                said = str(problem)
+                print(f"fakesss: a worker waits: {said}", file=sys.stderr, flush=True)
+            time.sleep(WAIT_S)
+        else:
+            signal.signal(signal.SIGTERM, stop)
+            return created
 
 
 def end_with_parent() -> None:

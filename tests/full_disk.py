@@ -45,8 +45,8 @@ class SmallDisk:
         self.seen = Path(f"/proc/{self.holder.pid}/root{path}")
         self.filler = self.seen / "filler"
 
-    def fill(self) -> None:
-        """Write until no byte more goes on it."""
+    def fill(self, leave: int = 0) -> None:
+        """Write until no byte more goes on it; then give `leave` bytes back, whole pages of 4096."""
         with self.filler.open("ab", buffering=0) as file:
             try:
                 while True:
@@ -54,6 +54,7 @@ class SmallDisk:
             except OSError as error:
                 if error.errno != errno.ENOSPC:
                     raise
+            file.truncate(max(0, file.tell() - leave))
 
     def free(self) -> None:
         """Take away what `fill` wrote."""

@@ -16,10 +16,12 @@ from typing import Any
 
 import pytest
 from postgres_server import PostgresServer
+from running_survey import until
 from server_process import ServerProcess, server_process
 from sqlalchemy import func, select
 from stored import sound
 from study_fixture import write_study
+from survey_client import Participant
 
 from study_server import schema
 from study_server.app import admin_secret
@@ -117,4 +119,20 @@ def test_a_worker_the_parent_of_two_and_postgresql_are_killed(
         under_load(server, study, postgres_url) as load,
     ):
         strike(load, postgres_url, [a_worker, the_database, the_parent], kills)
+    assert "Traceback" not in server.said()
+
+
+def test_workers_that_find_no_database_say_so_and_wait_until_it_is_back(
+    study: Path, tmp_path: Path, postgres: PostgresServer, postgres_url: str
+) -> None:
+    with server_process(study, tmp_path / "server.log", database_url=postgres_url, workers=2) as server:
+        until(lambda: len(server.workers()) == 2)
+        person = Participant(server.url).to_trials()
+        postgres.kill()
+        for worker in server.workers():
+            os.kill(worker, signal.SIGKILL)
+        until(lambda: "fakesss: a worker waits: postgresql" in server.said())
+        postgres.start()
+        person.rate()  # the connection waits in line until somebody is there to answer it
+        assert person.to_end()
     assert "Traceback" not in server.said()
