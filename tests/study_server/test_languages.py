@@ -149,7 +149,8 @@ def test_the_browser_or_the_visitor_chooses_and_the_session_keeps_it(
         assert consent.headers["Content-Language"] == language
         assert "Accept-Language" in consent.headers["Vary"]
         assert f'<html lang="{language}">' in consent.text
-        assert f"<title>{TEXTS[language]['title']}</title>" in consent.text
+        heading = catalogue(language).gettext("Before you begin")
+        assert f"<title>{heading} – {TEXTS[language]['title']}</title>" in consent.text
         here = consent.url.path
         fields = dict(re.findall(r'<input type="hidden" name="(\w+)" value="(\w*)">', consent.text))
         declined = client.post(f"{here}/declined", data=fields)
