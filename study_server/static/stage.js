@@ -39,6 +39,7 @@ export class Stage {
   }
 
   #fit() {
+    this.notice.hidden = true; // it would move the picture
     fitToPixels(this.#image);
     const scaled = isScaled(this.#image);
     const isCovered = scaled && this.isShrinkingRefused;

@@ -1,52 +1,142 @@
 """The picture on screen is the picture rendered, pixel by pixel, or there is none."""
 
+import base64
 import io
 import math
+import sqlite3
 from collections.abc import Callable
 from pathlib import Path
+from typing import Any
 
 import numpy as np
+import numpy.typing as npt
 import pytest
 from PIL import Image
-from playwright.sync_api import Browser, Page, Route, expect
+from playwright.sync_api import Browser, BrowserContext, Page, Route, expect
 from steps import answerable, rate, rows, to_practice, to_trials
 from study_fixture import draw_disc
-from trial_pages import saved
+from trial_pages import begun, open_trials, saved, short_study
 
 from study_server.manifest import load_study
+from study_server.serve import served
 
 pytestmark = pytest.mark.browser
+
+Pixels = npt.NDArray[np.uint8]
+
+
+ZOOMS = (0.9, 1.0, 1.1, 1.25, 1.5)
 
 
 @pytest.mark.parametrize("ratio", [1, 1.25, 1.5, 2])
 def test_one_file_pixel_is_one_screen_pixel(
-    launch: Callable[..., Browser], url: str, study: Path, ratio: float
+    launch_with: Callable[..., BrowserContext], tmp_path: Path, ratio: float
 ) -> None:
-    # a switch, because an emulated ratio scales a page laid out for ratio 1
-    browser = launch(f"--force-device-scale-factor={ratio}", "--window-size=1113,801")
-    page = browser.new_context(no_viewport=True).new_page()
-    to_practice(page, url)
-    box = page.locator("#stage img").bounding_box()
-    assert box
-    screen = np.asarray(Image.open(io.BytesIO(page.screenshot())).convert("RGB"))
-    left, top = (math.floor(box[side] * ratio + 0.5) for side in ("x", "y"))
-    shown = screen[top : top + 200, left : left + 200].astype(int)
-    sha256 = page.locator("#stage img").get_attribute("data-sha256")
+    """What the compositor drew, taken at the window's own resolution, against the file, at each page zoom.
+
+    The ratio is a switch, because an emulated one scales a page laid out for ratio 1. The zoom is the browser's own (as
+    by Ctrl and +), kept in its settings for each site; so each zoom is another name of this machine.
+    """
+    study = short_study(tmp_path, size=201)
+    levels = {name_of(zoom): {"zoom_level": math.log(zoom, 1.2), "last_modified": "0"} for zoom in ZOOMS}
+    names = ",".join(f"MAP {name} 127.0.0.1" for name in levels)
+    switches = (f"--force-device-scale-factor={ratio}", "--window-size=1113,801", f"--host-resolver-rules={names}")
+    browser = launch_with({"partition": {"per_host_zoom_levels": {"x": levels}}}, *switches)
+    page = browser.new_page()
+    with served(study) as url:
+        path = begun(url).removeprefix(url)
+        for zoom in ZOOMS:
+            page.goto(url.replace("127.0.0.1", name_of(zoom)) + path)
+            answerable(page, "1 of 6")
+            assert page.evaluate("devicePixelRatio") == pytest.approx(ratio * zoom, rel=1e-6)
+            assert np.array_equal(*shown_and_rendered(page, study)), f"zoom {zoom}"
+            rate(page, "44")
+            saved(page)
+            path = begun(url).removeprefix(url)
+        drawn = {(row["drawn_width_px"], row["drawn_height_px"], row["scaled"]) for row in displays(study)}
+        assert drawn == {(201, 201, 0)}
+        assert [row["zoom"] for row in displays(study)] == pytest.approx(list(ZOOMS), rel=0.01)
+
+
+def name_of(zoom: float) -> str:
+    """The site at which the browser has this zoom."""
+    return f"at-{zoom:.0%}.test".replace("%", "")
+
+
+def shown_and_rendered(page: Page, study: Path) -> tuple[Pixels, Pixels]:
+    """The picture as it stands on the screen and as it is in its file, both (height, width, 3), uint8."""
+    screenshot = page.context.new_cdp_session(page).send("Page.captureScreenshot", {"format": "png"})
+    screen = np.asarray(Image.open(io.BytesIO(base64.b64decode(screenshot["data"]))).convert("RGB"))
+    image = page.locator("#stage img")
+    sha256 = image.get_attribute("data-sha256")
     path = next(each.path for each in load_study(study).stimuli if each.sha256 == sha256)
-    rendered = np.asarray(Image.open(path).convert("RGB")).astype(int)
-    assert np.abs(shown - rendered).max() == 0
-    assert page.evaluate("devicePixelRatio") == ratio
-    browser.close()
+    rendered = np.asarray(Image.open(path).convert("RGB"))
+    corner = image.evaluate("img => [img.getBoundingClientRect().left, img.getBoundingClientRect().top]")
+    left, top = (side * page.evaluate("devicePixelRatio") for side in corner)
+    assert (left, top) == pytest.approx((round(left), round(top)), abs=0.05)  # on whole pixels
+    height, width = rendered.shape[:2]
+    return screen[round(top) : round(top) + height, round(left) : round(left) + width], rendered
 
 
-def test_a_window_too_narrow_is_seen_in_the_data(browser: Browser, url: str, study: Path) -> None:
-    context = browser.new_context(viewport={"width": 180, "height": 700})
-    page = context.new_page()
-    to_trials(page, url)
-    rate(page, "44")
-    saved(page)
-    assert float(rows(study)[0]["drawn_width_px"]) < 180
-    context.close()
+def displays(study: Path) -> list[dict[str, Any]]:
+    """How each answered picture stood on the screen, as stored, in the order of the answers."""
+    database = sqlite3.connect(study / "ratings.sqlite")
+    database.row_factory = sqlite3.Row
+    query = "select * from presentations where answered_at is not null order by answered_at"
+    found = [dict(row) for row in database.execute(query)]
+    database.close()
+    return found
+
+
+def resize(page: Page, width: int, height: int = 800) -> None:
+    """Make the window so large."""
+    page.set_viewport_size({"width": width, "height": height})
+
+
+def test_a_picture_that_does_not_fit_is_refused_until_it_does(page: Page, tmp_path: Path) -> None:
+    study = short_study(tmp_path, size=400, scaled_pictures="refuse")
+    with served(study) as url:
+        resize(page, 390)
+        page.goto(begun(url))
+        notice = page.get_by_role("alert")
+        expect(notice).to_contain_text("make this window larger")
+        expect(page.locator("#stage img")).to_be_hidden()
+        expect(page.locator(".question").first).to_be_hidden()
+        resize(page, 900)
+        answerable(page, "1 of 6")
+        expect(notice).to_be_hidden()
+        assert np.array_equal(*shown_and_rendered(page, study))
+        resize(page, 390)  # while it is looked at
+        expect(notice).to_be_visible()
+        expect(page.locator("#stage img")).to_be_hidden()
+        page.wait_for_timeout(300)
+        rate(page, "44")  # what cannot be seen is not rated
+        expect(page.locator("#count")).to_have_text("1 of 6")
+        resize(page, 900)
+        expect(page.locator("#stage img")).to_be_visible()
+        page.keyboard.press("Enter")
+        answerable(page, "2 of 6")
+        saved(page)
+    (row,) = displays(study)
+    assert (row["drawn_width_px"], row["drawn_height_px"], row["scaled"]) == (400, 400, 0)
+    assert row["focus_lost_ms"] >= 300
+
+
+def test_a_picture_that_does_not_fit_is_flagged(page: Page, tmp_path: Path) -> None:
+    study = short_study(tmp_path, size=400)
+    with served(study) as url:
+        open_trials(page, url)
+        resize(page, 300)  # shrunk for a while counts as shrunk
+        expect(page.locator("#stage img")).not_to_have_js_property("width", 400)
+        width = page.locator("#stage img").evaluate("img => img.getBoundingClientRect().width")
+        resize(page, 900)
+        rate(page, "44")
+        saved(page)
+    (row,) = displays(study)
+    assert width < 300
+    assert (row["drawn_width_px"], row["drawn_height_px"]) == pytest.approx((width, width), abs=0.02)
+    assert row["scaled"] == 1
+    assert row["gamut"] in ("srgb", "p3", "rec2020")
 
 
 def test_a_picture_changed_on_the_server_is_not_shown(page: Page, browser: Browser, url: str, study: Path) -> None:
