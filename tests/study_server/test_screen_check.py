@@ -113,7 +113,7 @@ def test_a_bad_form_leads_on_without_an_error(screened: Path, csv_rows: CsvRows)
     with served(screened) as url:
         person = Participant(url).consent()
         assert person.state["parts"] == list(ALL)
-        junk = {"px_per_mm": "wide", "plate_1": "x" * 5000, "match_50": "\x00", "id": "other", "zoom": "1"}
+        junk = {"px_per_mm": "wide", "plate_1": "x" * 5000, "match_50": "\ufffd", "id": "other", "zoom": "1"}
         assert person.post("screen", **junk)["step"] == "instructions"
         person.post("screen", **FULL)  # too late: the step was left
         row = csv_rows(screened, url, "participants")[0]
