@@ -84,7 +84,7 @@ function fillRow(line, row, most) {
 
 function bars(counts) {
   const most = Math.max(1, ...counts);
-  return counts.map((n, i) => `M${i}.1 10v${-10 * n / most}h.8V10z`).join("");
+  return counts.map((n, i) => `M${i}.1 10v${Math.round((-1000 * n) / most) / 100}h.8V10z`).join("");
 }
 
 // For who listens: once a minute, and only if something has changed.
