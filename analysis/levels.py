@@ -10,6 +10,7 @@ import pandas as pd
 from analysis.columns import choose_columns, decimal_points, lines_of_answers, read_header, read_text
 from analysis.labels import natural_order
 from analysis.plan import AnalysisPlan
+from analysis.ratings import is_check
 from analysis.spreadsheets import unguarded
 from analysis.study import Factor, Picture, Question, StudyInfo
 from fakesss.problem import BadInput, nearest
@@ -36,7 +37,9 @@ def from_ratings(
         factors=tuple(
             Factor(name, level_order([row[name] for row in placed.values() if name in row])) for name in factors
         ),
-        questions=tuple(Question(str(name), scale=scale) for name in ratings["question"].drop_duplicates()),
+        questions=tuple(
+            Question(str(name), scale=scale) for name in ratings.loc[~is_check(ratings), "question"].unique()
+        ),
         pictures=tuple(
             Picture(
                 name,

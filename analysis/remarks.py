@@ -7,6 +7,7 @@ import pandas as pd
 
 from analysis.labels import natural_key
 from analysis.plan import AnalysisPlan
+from analysis.ratings import is_check
 from analysis.reasons import reader_words
 from analysis.results import Analysed
 from analysis.sample import Sample
@@ -93,6 +94,7 @@ def question_remarks(study: StudyInfo, sample: Sample, ratings: pd.DataFrame) ->
     """Questions that the study does not ask, and those of it that have no answer."""
     asked = [q.name for q in study.questions]
     said = []
+    ratings = ratings[~is_check(ratings)]
     for name in (str(found) for found in ratings["question"].unique() if found not in asked):
         meant = get_close_matches(name, asked, n=1, cutoff=0.5)
         hint = f' (did you mean "{meant[0]}"?)' if meant else ""

@@ -14,7 +14,7 @@ from analysis.one_core import on_one_core
 from analysis.page import render_page, sections_of
 from analysis.plan import AnalysisPlan, margins_not_asked, refuse_margins
 from analysis.provenance import provenance
-from analysis.ratings import DEFAULT_SCALE, read_ratings
+from analysis.ratings import DEFAULT_SCALE, is_check, read_ratings
 from analysis.remarks import remarks
 from analysis.sample import Sample, draw_sample
 from analysis.study import StudyInfo, read_manifest
@@ -59,10 +59,12 @@ def write_report(
         frame, f"Ratings in {ratings.name}", scale, list(factors or {}),
         read_levels(ratings, columns or {}, factors) if factors else None,
     )  # fmt: skip
+    frame = with_repeats(frame, study)
     refuse_strangers(study, frame, ratings)
     plan = plan or study.plan
     refuse_margins(plan, {q.name: q.scale for q in study.questions}, "plan")
-    sample = draw_sample(frame[frame["question"].isin([q.name for q in study.questions])], plan, participants)
+    asked_of = frame["question"].isin([q.name for q in study.questions])
+    sample = draw_sample(frame[asked_of | is_check(frame)], plan, participants)
     evidence = gather(study, plan, sample, frame, progress)
     sections = sections_of(evidence)
     drawings = [drawing for section in sections for drawing in section.drawings]
@@ -97,6 +99,14 @@ def results_json(
         "warnings": said,
         "session": origin,
     }
+
+
+def with_repeats(frame: pd.DataFrame, study: StudyInfo) -> pd.DataFrame:
+    """`frame` with `repeat_of` by the study, where the file has no such column, as a wide one."""
+    again = {picture.id: picture.same_picture_as for picture in study.pictures if picture.role == "repeat"}
+    if "repeat_of" in frame or not again:
+        return frame
+    return frame.assign(repeat_of=frame["stimulus"].map(again).fillna(""))
 
 
 def decimals_lost(study: StudyInfo, ratings: pd.DataFrame) -> list[str]:
