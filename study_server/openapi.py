@@ -34,6 +34,7 @@ SCHEMAS: dict[str, Schema] = {
     "Acknowledged": record(
         "saved", "next", saved={"type": "array", "items": pointer("Saved")}, next=pointer("Page")
     ),
+    "Progress": record("step", "title", "started", "finished", "gate", step=TEXT, title=TEXT, gate=pointer("Gate")),
     "Gate": record("state", "meaning", "history", state=TEXT, meaning=TEXT, history={"type": "array"}),
 }  # fmt: skip
 
@@ -100,7 +101,7 @@ ADDRESSES: dict[tuple[str, str], tuple[Media, tuple[int, ...], Schema | None]] =
     ("get", "/admin/report/{path}"): (file("*/*"), (404, 409, *LOCKED), None),
     ("post", "/admin/login"): ({}, (303, 401, 429, *POSTED), form("secret", secret=TEXT)),
     ("post", "/admin/logout"): ({}, (303, 403), None),
-    ("get", "/admin"): (page(), LOCKED, None),
+    ("get", "/admin"): (page("Progress"), LOCKED, None),
     ("post", "/admin/gate"): (
         page("Gate"), (303, 409, *LOCKED, *POSTED),
         form("state", state={"type": "string", "enum": ["open", "paused", "closed"]}, sure=YES),
@@ -124,7 +125,7 @@ def responses(media: Media, others: tuple[int, ...]) -> Schema:
     for status in sorted({*others, 405}):
         found[str(status)] = {"description": STATUS[status]}
         if status >= 400:
-            found[str(status)]["content"] = page("Page" if status == 401 else "Error")
+            found[str(status)]["content"] = page("Error")
         if status == 303:
             found["303"]["headers"] = {"Location": {"required": True, "schema": TEXT}}
     if "503" in found and "Health" in str(media):
