@@ -1,5 +1,6 @@
 """The export: fixed columns, every expected row, nothing a spreadsheet would run, nothing undescribed."""
 
+import codecs
 import csv
 import re
 import tomllib
@@ -8,6 +9,7 @@ from pathlib import Path
 
 import pandas as pd
 import pytest
+from exported_study import people, write_hostile_study
 from pydantic import BaseModel
 from study_fixture import write_study
 from survey_client import Participant
@@ -15,12 +17,13 @@ from survey_client import Participant
 from fakesss.problem import BadInput
 from study_server import schema
 from study_server.answers import Answer, Display, Posted
-from study_server.cells import ROWS_AT_ONCE, cell, csv_text, iso
-from study_server.codebook import TABLES
-from study_server.columns import RATINGS
-from study_server.export import export_ratings
+from study_server.cells import FORMULA_STARTS, ROWS_AT_ONCE, cell, csv_text, iso
+from study_server.codebook import TABLES, WIDE, columns_of
+from study_server.columns import PARTICIPANTS, RATINGS
+from study_server.export import ROWS, export_ratings, snapshot
 from study_server.manifest import load_study
 from study_server.raters import Effects, QuestionEffects, default_effects, load_effects
+from study_server.serve import served
 from study_server.settings import AboutField, Question, Survey, check_survey
 
 DOCS = Path(__file__).parents[2] / "docs"
@@ -63,6 +66,82 @@ def test_every_table_has_a_codebook_that_describes_each_column(url: str, study: 
         frame = pd.read_csv(path)
         assert len(frame) > 0
         assert list(frame.columns) == described.column[described.table == path.name].tolist()
+
+
+@pytest.fixture(scope="module")
+def hostile(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """The export of a study with odd names, of people in every state; the study lies beside it."""
+    folder = tmp_path_factory.mktemp("hostile")
+    study = write_hostile_study(folder / "study")
+    with served(study) as url:
+        people(url)
+    export_ratings(study, folder / "out")
+    return folder / "out"
+
+
+@pytest.mark.parametrize("table", TABLES)
+def test_no_cell_is_without_a_column(hostile: Path, table: str) -> None:
+    """What a row has beside its columns would be lost without a word."""
+    beside = {"events": {"id"}, "wide": set(PARTICIPANTS)}.get(table, set())
+    with snapshot(hostile.parent / "study", "live", None) as source:
+        known = columns_of(table, source.study)
+        for row in ROWS[table](source):
+            assert set(row) - set(known) <= beside
+            for name, value in row.items():
+                if name in known and known[name].values and value not in (None, ""):
+                    assert str(cell(value)) in known[name].values, (name, value)
+            for name, column in known.items():
+                assert row.get(name) not in (None, "") or column.missing, f"{name} is empty, and nobody says why"
+
+
+@pytest.mark.parametrize("table", TABLES)
+def test_headers_follow_from_the_study_alone(hostile: Path, tmp_path: Path, table: str) -> None:
+    write_hostile_study(tmp_path / "study")
+    export_ratings(tmp_path / "study", tmp_path / "nobody")
+    with (hostile / f"{table}.csv").open() as some, (tmp_path / "nobody" / f"{table}.csv").open() as none:
+        assert some.readline() == none.readline()
+
+
+@pytest.mark.parametrize("table", TABLES)
+def test_pandas_and_csv_read_the_same_cells(hostile: Path, table: str) -> None:
+    path = hostile / f"{table}.csv"
+    assert not path.read_bytes().startswith(codecs.BOM_UTF8)
+    with path.open(newline="", encoding="utf-8") as file:
+        header, *rows = csv.reader(file, strict=True)
+    frame = pd.read_csv(path, dtype=str, keep_default_na=False)
+    assert list(frame.columns) == header
+    assert [[text.replace("\r\n", "\n") for text in row] for row in frame.to_numpy().tolist()] == [
+        [text.replace("\r\n", "\n") for text in row] for row in rows
+    ]
+    assert not [text for row in (header, *rows) for text in row if runs(text)]
+
+
+def runs(text: str) -> bool:
+    """Whether a spreadsheet would run this cell; numbers below zero are numbers."""
+    return text.startswith(FORMULA_STARTS) and not re.fullmatch(r"-?[0-9.]+(e[+-][0-9]+)?", text)
+
+
+def test_what_was_never_due_is_told_from_what_was_left_unanswered(hostile: Path) -> None:
+    rows = pd.read_csv(hostile / "ratings.csv")
+    told = pd.read_csv(hostile / "participants.csv").set_index("session")
+    stopped = told[(told.step == "trials")].index.item()
+    rows = rows[rows.session == stopped]
+    assert rows.trial[rows.rating.notna()].unique().tolist() == [1, 2]
+    assert rows[rows.rating.isna()].shown_at.isna().all()
+    assert told.trials_answered[stopped] + 1 == rows.trial[rows.rating.isna()].min()
+    assert told.step.tolist() == ["done", "trials", "about", "screened_out", "withdrawn"]
+
+
+def test_wide_has_each_answer_of_the_long_table_in_a_column_of_its_own(hostile: Path) -> None:
+    long, wide = (pd.read_csv(hostile / f"{name}.csv") for name in ("ratings", "wide"))
+    pictures = ["img01", "img02", "img03", "img04", "img01r", "img02r"]
+    names = [f"{picture}__{question}" for picture in pictures for question in ('looks, "soft"', "translucent")]
+    assert list(wide.columns) == [*WIDE, *names, "check_1", "check_2"]
+    assert wide.session.tolist() == long.session.unique().tolist()
+    given = long[long.question != "check"]
+    melted = wide.melt("session", names, "column", "rating").set_index(["session", "column"]).rating
+    keys = pd.MultiIndex.from_arrays([given.session, given.stimulus + "__" + given.question])
+    assert melted.loc[keys].fillna(0).tolist() == given.rating.fillna(0).tolist()
 
 
 def test_the_stimuli_bring_their_levels(study: Path, tmp_path: Path) -> None:

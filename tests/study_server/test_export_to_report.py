@@ -24,7 +24,7 @@ PEOPLE = 6
 
 
 def answer_all(url: str, number: int) -> None:
-    """Person `number` rates picture p with 1 + (p + number) % 5, a little otherwise on the second question.
+    """Person `number` gives answers of 1 to 5 that differ from picture to picture.
 
     The first three heed every instructed item, the fourth one, the others none; the last leaves after four trials.
     """
@@ -38,11 +38,8 @@ def answer_all(url: str, number: int) -> None:
         if person.state["step"] != "trials":
             break
         body = person.answers()
-        picture = (
-            int(re.findall(r"\d+", person.state["picture"]["label"])[0]) if "label" in person.state["picture"] else 0
-        )
         for given, question in zip(body["answers"], person.state["questions"], strict=True):
-            given["rating"] = 1 + (picture + number + len(question["name"])) % 5
+            given["rating"] = 1 + (person.state["place"] * (number + 1) + len(question["name"])) % 5
             if question["name"] == "check":
                 asked = int(re.findall(r"\d+", question["text"])[0])
                 heed = number < 3 or (number == 3 and not heeded)
