@@ -29,7 +29,7 @@ export function match(canvas, slider) {
 }
 
 // Draws with `draw(context, width, height)` in device pixels, at most `width` x `height` CSS px in its parent's width,
-// anew at every change of window and zoom. Gives a function that draws again.
+// anew when that width or the device-pixel ratio changes. Gives a function that draws again.
 function sharp(canvas, width, height, draw) {
   const room = canvas.parentElement;
   const redraw = () => {
@@ -43,8 +43,16 @@ function sharp(canvas, width, height, draw) {
     draw(canvas.getContext("2d"), canvas.width, canvas.height);
   };
   new ResizeObserver(redraw).observe(room);
-  window.addEventListener("resize", redraw);
+  onPixelRatio(redraw);
   return redraw;
+}
+
+// Calls `changed` whenever the device-pixel ratio changes: zoom resizes the window, another monitor need not.
+function onPixelRatio(changed) {
+  matchMedia(`(resolution: ${devicePixelRatio}dppx)`).addEventListener("change", () => {
+    changed();
+    onPixelRatio(changed);
+  }, { once: true });
 }
 
 function fill(paint, value, x, y, width, height) {

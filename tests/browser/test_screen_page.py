@@ -210,6 +210,18 @@ def test_stripes_and_patches_are_drawn_on_device_pixels(launch: Callable[..., Br
     browser.close()
 
 
+def test_stripes_follow_the_pixel_ratio(page: Page, url: str) -> None:
+    to_check(page, url)
+    for name in ("It fits", "Next"):
+        page.get_by_role("button", name=name).click()
+    session = page.context.new_cdp_session(page)
+    for ratio in (1, 1.75, 1.1):
+        # another width, since Chromium tells of an emulated ratio only with it; the stripes' own room stays as wide
+        metrics = {"width": 1280 + int(10 * ratio), "height": 800, "deviceScaleFactor": ratio, "mobile": False}
+        session.send("Emulation.setDeviceMetricsOverride", metrics)
+        expect(page.locator(".match").nth(1)).to_have_js_property("height", int(200 * ratio))
+
+
 def pixels(page: Page, canvas: Locator, ratio: float) -> NDArray[np.int_]:
     """The grey values (height, width) of a canvas in a screenshot, one for each pixel of the screen."""
     canvas.scroll_into_view_if_needed()
