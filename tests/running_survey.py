@@ -31,7 +31,7 @@ def running_survey(kind: str, study: Path, log: Path, postgres_url: str = "") ->
         with server_process(study, log, database_url=database, workers=2) as server:
             until(lambda: len(server.workers()) == 2)
             yield Running(server.url, database)
-        assert "Traceback" not in server.said()
+        assert server.unforeseen() == []
     else:
         with served(study, database_url=database) as url:
             yield Running(url, database)

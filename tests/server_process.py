@@ -4,6 +4,7 @@ import contextlib
 import json
 import os
 import random
+import re
 import signal
 import socket
 import subprocess
@@ -98,6 +99,10 @@ class ServerProcess:
     def said(self) -> str:
         """Everything that it wrote on standard error so far."""
         return self.log.read_text(encoding="utf-8")
+
+    def unforeseen(self) -> list[str]:
+        """Lines of what it wrote that tell of errors nobody foresaw."""
+        return [line for line in self.said().splitlines() if re.search("Traceback|unexpected|Exception", line)]
 
 
 @contextlib.contextmanager

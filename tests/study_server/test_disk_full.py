@@ -37,7 +37,7 @@ def server(disk: SmallDisk, tmp_path: Path) -> Iterator[ServerProcess]:
     """Of the study on the disk."""
     with server_process(disk.path, tmp_path / "server.log", prefix=disk.prefix) as process:
         yield process
-        assert "Traceback" not in process.said()
+        assert process.unforeseen() == []
 
 
 def refused(person: Participant, path: str, body: dict[str, Any]) -> None:
@@ -119,7 +119,7 @@ def test_a_disk_that_fails_while_the_server_runs(study: Path, tmp_path: Path) ->
         assert httpx.get(f"{server.url}/health").status_code == 200
         person.rate(5)
         assert person.to_end()
-    assert "Traceback" not in server.said()
+    assert server.unforeseen() == []
     sound(default_url(study))
 
 
