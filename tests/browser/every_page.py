@@ -9,7 +9,7 @@ Look = Callable[[str], object]
 
 
 def whole_session(page: Page, url: str, look: Look) -> None:
-    """From the link to the completion code, and past it the withdrawal. The study asks what translated_study.py asks."""
+    """From the link to the completion code, then withdrawal. The study asks what translated_study.py asks."""
     page.goto(url)
     look("consent")
     page.locator(".agree button").click()
