@@ -147,6 +147,7 @@ def test_by_mouse_dragging_the_corner_and_going_back(page: Page, url: str, study
 def test_one_button_leaves_it_with_what_the_browser_knows_anyway(page: Page, url: str, study: Path) -> None:
     to_check(page, url)
     page.keyboard.press("Tab")
+    expect(page.locator("#why")).to_contain_text(". We also store its size in pixels")
     expect(page.get_by_role("button", name="Continue without these checks")).to_be_focused()
     page.keyboard.press("Enter")
     page.wait_for_selector("body.instructions")
