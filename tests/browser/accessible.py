@@ -17,16 +17,20 @@ CUT_OFF = """async () => {
   const wide = document.scrollingElement.scrollWidth;
   const found = wide > innerWidth ? [`the page is ${wide} wide in a window of ${innerWidth}`] : [];
   for (const element of document.querySelectorAll("body *")) {
-    const { left, right, width } = element.getBoundingClientRect();
+    const { left, right, width, height } = element.getBoundingClientRect();
     if (!element.checkVisibility() || width <= 1 || element.closest(".scroll")) continue;
     const clips = getComputedStyle(element).overflowX !== "visible" && element.scrollWidth > element.clientWidth + 1;
     const name = `${element.tagName} ${element.textContent.trim().slice(0, 40)}`;
     if (left < -1 || right > innerWidth + 1) found.push(`${name}: from ${left} to ${right} of ${innerWidth}`);
+    const isTarget = element.matches("button, label:has(input)");
+    if (isTarget && Math.min(width, height) < 24) found.push(`${name}: ${width} x ${height}`);
     if (clips) found.push(`${name}: ${element.scrollWidth} wide in ${element.clientWidth}`);
   }
   return found;
 }"""
-"""What does not fit the window's width, once it is drawn anew; tables may scroll in themselves (WCAG 1.4.10)."""
+"""What does not fit the window's width, once it is drawn anew; tables may scroll in themselves (WCAG 1.4.10).
+
+Labels are as large as what can be hit (2.5.8); axe measures the unseen buttons inside them."""
 
 SPACED = """() => {
   const sheet = new CSSStyleSheet();
