@@ -106,7 +106,8 @@ class WebSafety:
         path = scope["path"]
         policy = self.admin_policy if path.startswith("/admin") else self.policy
         policy = self.report_policy if path.startswith("/admin/report/") else policy
-        headers = {**HEADERS, "Content-Security-Policy": policy}
+        stored = "no-cache" if path.startswith("/static/") else "no-store"  # no-cache: kept, and asked for anew
+        headers = {"Cache-Control": stored, "Vary": "Accept", **HEADERS, "Content-Security-Policy": policy}
         if scope["scheme"] == "https":
             headers["Strict-Transport-Security"] = f"max-age={HTTPS_ONLY_S}"
         return headers
@@ -170,15 +171,13 @@ def limited(receive: Receive) -> Callable[[], Awaitable[MutableMapping[str, Any]
 
 
 def with_headers(send: Send, ours: Mapping[str, str]) -> Send:
-    """`send` that adds `ours` to the response's headers."""
+    """`send` that adds those of `ours` that the response does not have."""
 
     async def send_with_headers(message: Message) -> None:
         if message["type"] == "http.response.start":
             headers = MutableHeaders(scope=message)
-            headers.setdefault("Cache-Control", "no-store")
-            headers.setdefault("Vary", "Accept")
             for name, value in ours.items():
-                headers[name] = value
+                headers.setdefault(name, value)
         await send(message)
 
     return send_with_headers
