@@ -1,7 +1,5 @@
 """The picture on screen is the picture rendered, pixel by pixel, or there is none."""
 
-import base64
-import io
 import math
 import sqlite3
 from collections.abc import Callable
@@ -9,20 +7,15 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-import numpy.typing as npt
 import pytest
-from PIL import Image
 from playwright.sync_api import Browser, BrowserContext, Page, Route, expect
 from steps import answerable, rate, rows, to_practice, to_trials
 from study_fixture import draw_disc
-from trial_pages import begun, open_trials, saved, short_study
+from trial_pages import begun, open_trials, saved, short_study, shown_and_rendered
 
-from study_server.manifest import load_study
 from study_server.serve import served
 
 pytestmark = pytest.mark.browser
-
-Pixels = npt.NDArray[np.uint8]
 
 
 ZOOMS = (0.9, 1.0, 1.1, 1.25, 1.5)
@@ -61,21 +54,6 @@ def test_one_file_pixel_is_one_screen_pixel(
 def name_of(zoom: float) -> str:
     """The site at which the browser has this zoom."""
     return f"at-{zoom:.0%}.test".replace("%", "")
-
-
-def shown_and_rendered(page: Page, study: Path) -> tuple[Pixels, Pixels]:
-    """The picture as it stands on the screen and as it is in its file, both (height, width, 3), uint8."""
-    screenshot = page.context.new_cdp_session(page).send("Page.captureScreenshot", {"format": "png"})
-    screen = np.asarray(Image.open(io.BytesIO(base64.b64decode(screenshot["data"]))).convert("RGB"))
-    image = page.locator("#stage img")
-    sha256 = image.get_attribute("data-sha256")
-    path = next(each.path for each in load_study(study).stimuli if each.sha256 == sha256)
-    rendered = np.asarray(Image.open(path).convert("RGB"))
-    corner = image.evaluate("img => [img.getBoundingClientRect().left, img.getBoundingClientRect().top]")
-    left, top = (side * page.evaluate("devicePixelRatio") for side in corner)
-    assert (left, top) == pytest.approx((round(left), round(top)), abs=0.05)  # on whole pixels
-    height, width = rendered.shape[:2]
-    return screen[round(top) : round(top) + height, round(left) : round(left) + width], rendered
 
 
 def displays(study: Path) -> list[dict[str, Any]]:

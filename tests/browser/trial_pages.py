@@ -1,12 +1,22 @@
 """Straight to the pictures, past the pages that other tests are about."""
 
+import base64
+import io
 from pathlib import Path
 from typing import Any
 
+import numpy as np
+import numpy.typing as npt
+import pytest
+from PIL import Image
 from playwright.sync_api import Page, expect
 from steps import answerable
 from study_fixture import write_study
 from survey_client import Participant
+
+from study_server.manifest import load_study
+
+Pixels = npt.NDArray[np.uint8]
 
 SHORT = {"about": [], "screen_check": [], "practice": 0}
 
@@ -38,3 +48,18 @@ def open_trials(page: Page, url: str, count: str = "1 of 6") -> str:
 def saved(page: Page) -> None:
     """Wait until the server has every answer that was given on this page."""
     expect(page.locator("#saved")).to_have_text("Saved", timeout=20_000)
+
+
+def shown_and_rendered(page: Page, study: Path) -> tuple[Pixels, Pixels]:
+    """The picture as it stands on the screen and as it is in its file, both (height, width, 3), uint8."""
+    screenshot = page.context.new_cdp_session(page).send("Page.captureScreenshot", {"format": "png"})
+    screen = np.asarray(Image.open(io.BytesIO(base64.b64decode(screenshot["data"]))).convert("RGB"))
+    image = page.locator("#stage img")
+    sha256 = image.get_attribute("data-sha256")
+    path = next(each.path for each in load_study(study).stimuli if each.sha256 == sha256)
+    rendered = np.asarray(Image.open(path).convert("RGB"))
+    corner = image.evaluate("img => [img.getBoundingClientRect().left, img.getBoundingClientRect().top]")
+    left, top = (side * page.evaluate("devicePixelRatio") for side in corner)
+    assert (left, top) == pytest.approx((round(left), round(top)), abs=0.05)  # on whole pixels
+    height, width = rendered.shape[:2]
+    return screen[round(top) : round(top) + height, round(left) : round(left) + width], rendered
