@@ -102,7 +102,7 @@ class ServerProcess:
 
     def unforeseen(self) -> list[str]:
         """Lines of what it wrote that tell of errors nobody foresaw."""
-        return [line for line in self.said().splitlines() if re.search("Traceback|unexpected|Exception", line)]
+        return [line for line in self.said().splitlines() if re.search("Traceback|^unexpected:|Exception in", line)]
 
 
 @contextlib.contextmanager
