@@ -58,7 +58,7 @@ class TooSlow(HTTPException):
     """The body was not there after `BODY_S`."""
 
     def __init__(self) -> None:
-        super().__init__(408, f"The request took more than {BODY_S:.0f} s to arrive.")
+        super().__init__(408, f"The request took more than {BODY_S:.0f} s to arrive.", {"Connection": "close"})
 
 
 class WebSafety:
