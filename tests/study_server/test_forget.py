@@ -20,7 +20,7 @@ from fakesss.cli import commands
 from fakesss.problem import BadInput
 from study_server import schema
 from study_server.app import admin_secret
-from study_server.database import open_database
+from study_server.database import default_url, open_database, secret
 from study_server.forget import forget, scrub_file
 from study_server.serve import served
 
@@ -101,12 +101,20 @@ def test_a_pseudonym_cannot_be_reckoned_again(study: Path, csv_rows: Exported) -
     with served(study) as url:
         take_part_plainly(url)
         before = csv_rows(study, url, "participants")[0]
+    old = secrets_of(study)
     forget(study)
     with served(study) as url:
+        assert not old & secrets_of(study)
         after = csv_rows(study, url, "participants")[0]
         assert csv_rows(study, url, "ratings")[0]["rating"] == "4"
     assert after["participant"] != before["participant"]
     assert after["session"] == before["session"]
+
+
+def secrets_of(study: Path) -> set[str]:
+    """What pseudonyms and addresses are made with."""
+    database = open_database(default_url(study))
+    return {secret(database, "salt"), secret(database, "signing_key")}
 
 
 def take_part_plainly(url: str) -> None:
@@ -128,6 +136,21 @@ def test_the_bytes_are_gone_from_the_files(tmp_path: Path, is_served: bool) -> N
         assert not gone(study, token)
         forget(study)
     assert gone(study, token)
+
+
+def test_what_another_program_deleted_goes_too(study: Path) -> None:
+    """Other programs leave deleted bytes in free pages."""
+    with served(study) as url:
+        take_part_plainly(url)
+    with closing(sqlite3.connect(study / "ratings.sqlite")) as other:
+        other.execute("PRAGMA secure_delete = OFF")
+        other.execute("UPDATE sessions SET comments = ?", ("the lighthouse keeper " * 1000,))
+        other.commit()
+        other.execute("UPDATE sessions SET comments = NULL")
+        other.commit()
+    assert b"lighthouse keeper" in bytes_of(study)
+    forget(study)
+    assert b"lighthouse keeper" not in bytes_of(study)
 
 
 def gone(study: Path, token: str) -> bool:

@@ -25,7 +25,7 @@ from study_server.serve import served
 ABOUT_FIELDS = [
     {"name": "age", "text": "Age?", "choices": ["under 18", "25-34"], "required": True, "screen_out": ["under 18"]},
 ]
-SURVEY = {"checks": 1, "practice": 1, "about": ABOUT_FIELDS, "release_after_minutes": 60}
+SURVEY = {"checks": 2, "practice": 1, "about": ABOUT_FIELDS, "release_after_minutes": 60}
 DAY_S = 86_400.0
 
 
@@ -74,7 +74,7 @@ def walk(person: Participant, lots: random.Random, steps: int) -> None:
         body = person.answers(lots.randint(1, 7), submission=f"the-first-{person.state['place']}")
         response = person.send(body)
         assert response.status_code == 200, response.text
-        if lots.random() < 0.3:
+        if lots.random() < 0.5:
             person.send(person.answers(lots.randint(1, 7), submission=f"once-more-{person.state['place']}"))
         person.state = person.client.get(person.here).json()
 
@@ -163,10 +163,10 @@ def by_tables(database: Any, mode: str) -> dict[str, Any]:
     }
 
 
-@pytest.mark.parametrize("people", [18, pytest.param(200, marks=pytest.mark.long)])
+@pytest.mark.parametrize("people", [20, pytest.param(200, marks=pytest.mark.long)])
 def test_the_same_count_everywhere(tmp_path: Path, database_url: str, people: int) -> None:
     """After any history, with a pilot beside the live study in one database."""
-    study = write_study(tmp_path / "study", question=QUESTIONS, survey=SURVEY)
+    study = write_study(tmp_path / "study", pictures=4, question=QUESTIONS, survey=SURVEY)
     lots = random.Random(people)
     with (
         served(study, database_url=database_url) as live,
