@@ -1,15 +1,15 @@
 """What the browser sends for one picture, and how it gets to disk: once, whatever happens on the way."""
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from typing import Annotated, Any, Literal
 
 from pydantic import Field
-from sqlalchemy import Connection, RowMapping, insert, select, update
+from sqlalchemy import Connection, RowMapping, bindparam, insert, select, update
 
 from fakesss.problem import Strict
 from study_server import schema
 from study_server.manifest import BuiltStudy
-from study_server.sessions import record, unanswered
+from study_server.sessions import Session, record
 from study_server.settings import CHECK_NAME
 from study_server.texts import N_
 
@@ -19,6 +19,11 @@ Pixels = Annotated[float, Field(ge=0, le=1e6)]
 Sha256 = Annotated[str, Field(pattern="^[0-9a-f]{64}$")]
 
 presentations = schema.presentations.c
+
+FIRST_ANSWERS = insert(schema.ratings)
+SHOWN = update(schema.presentations).where(
+    presentations.session == bindparam("of"), presentations.place == bindparam("at")
+)
 
 
 class Display(Strict):
@@ -64,18 +69,17 @@ class Refused(Exception):
         self.blanks = blanks
 
 
-def accepted(connection: Connection, study: BuiltStudy, session: RowMapping, sent: Posted) -> RowMapping:
-    """The presentation that `sent` answers: the one that is due, or one answered before.
+def accepted(study: BuiltStudy, session: Session, near: Sequence[RowMapping], sent: Posted) -> RowMapping:
+    """The presentation that `sent` answers, one of those `near` it: the one that is due, or one answered before.
 
     Raises `Refused` unless it was assigned, the picture drawn is the one assigned, and every question has an answer.
     """
-    at = select(schema.presentations).filter_by(session=session["id"], place=sent.place)
-    planned = connection.execute(at).mappings().one_or_none()
+    before, planned = at(near, sent.place - 1), at(near, sent.place)
     if session["step"] == "withdrawn":
         raise Refused(410, N_("You have withdrawn from this study; nothing is stored any more."))
     if planned is None:
         raise Refused(404, N_("There is no such picture in this session."))
-    if planned["answered_at"] is None and not is_due(connection, session, planned):
+    if planned["answered_at"] is None and not is_due(session, before, planned):
         raise Refused(409, N_("Another picture comes first."))
     if planned["stimulus_sha256"] != sent.stimulus_sha256:
         raise Refused(
@@ -97,25 +101,33 @@ def scales_of(study: BuiltStudy, planned: RowMapping) -> dict[str, int]:
     return asked if planned["check_expected"] is None else asked | {CHECK_NAME: study.settings.question[0].scale}
 
 
-def is_due(connection: Connection, session: RowMapping, planned: RowMapping) -> bool:
-    """Whether this presentation is the one the participant is at."""
+def at(near: Sequence[RowMapping], place: int) -> RowMapping | None:
+    """The presentation at `place`, if there is one."""
+    return next((row for row in near if row["place"] == place), None)
+
+
+def is_due(session: Session, before: RowMapping | None, planned: RowMapping) -> bool:
+    """Whether this presentation, not answered yet, is the one the participant is at.
+
+    It is if the one `before` it is answered: nothing is ever answered out of turn.
+    """
     step = "practice" if planned["practice"] else "trials"
-    if session["step"] != step:
-        return False
-    return bool(unanswered(connection, session["id"], limit=1)[0]["place"] == planned["place"])
+    return session["step"] == step and (before is None or before["answered_at"] is not None)
 
 
 def store(connection: Connection, planned: RowMapping, sent: Posted, now: float) -> list[dict[str, Any]]:
     """Bring the answers to disk and return them as they now stand, one for each question.
 
-    The first answer to a question is a row of `ratings`. The same one again changes nothing; another one is added to
-    `revisions`. A retry is known by its `submission`, so a late one cannot undo a revision.
+    The first answer to a question is a row of `ratings`; all those of a picture come together, and `answered_at` with
+    them. The same one again changes nothing; another one is added to `revisions`. A retry is known by its `submission`,
+    so a late one cannot undo a revision.
     """
     shown_at = now - sent.since_shown_ms / 1000
-    stored = []
-    for answer in sent.answers:
-        key = {"session": planned["session"], "place": planned["place"], "question": answer.question}
-        row = key | {
+    here = {"session": planned["session"], "place": planned["place"]}
+    rows = [
+        {
+            **here,
+            "question": answer.question,
             "rating": answer.rating,
             "rt_ms": answer.rt_ms,
             "shown_at": shown_at,
@@ -123,21 +135,28 @@ def store(connection: Connection, planned: RowMapping, sent: Posted, now: float)
             "stored_at": now,
             "submission": sent.submission,
         }
-        history = history_of(connection, key)
-        if not history:
-            connection.execute(insert(schema.ratings).values(row))
-        elif sent.submission not in {old["submission"] for old in history} and history[-1]["rating"] != answer.rating:
-            connection.execute(insert(schema.revisions).values(row | {"revision": len(history)}))
-            detail = {"trial": planned["trial"], "practice": planned["practice"], "question": answer.question}
-            change = {"from": history[-1]["rating"], "to": answer.rating, "revision": len(history)}
-            record(connection, planned["session"], now, "revised", detail | change)
-        stands = history_of(connection, key)
-        stored.append({"question": answer.question, "rating": stands[-1]["rating"], "revision": len(stands) - 1})
-    if planned["answered_at"] is None:
-        mine = (presentations.session == planned["session"], presentations.place == planned["place"])
-        facts = {"answered_at": now, "shown_at": shown_at, **sent.display.model_dump()}
-        connection.execute(update(schema.presentations).where(*mine).values(facts))
-    return stored
+        for answer in sent.answers
+    ]
+    if planned["answered_at"] is not None:
+        return [revise(connection, planned, row) for row in rows]
+    connection.execute(FIRST_ANSWERS, rows)
+    facts = {"answered_at": now, "shown_at": shown_at, **sent.display.model_dump()}
+    connection.execute(SHOWN, {"of": planned["session"], "at": planned["place"], **facts})
+    return [{"question": row["question"], "rating": row["rating"], "revision": 0} for row in rows]
+
+
+def revise(connection: Connection, planned: RowMapping, row: dict[str, Any]) -> dict[str, Any]:
+    """An answer to a question that has one already; how it stands then."""
+    history = history_of(connection, {name: row[name] for name in ("session", "place", "question")})
+    stands, revision = history[-1]["rating"], len(history) - 1
+    if row["submission"] not in {old["submission"] for old in history} and stands != row["rating"]:
+        revision += 1
+        connection.execute(insert(schema.revisions).values(row | {"revision": revision}))
+        detail = {"trial": planned["trial"], "practice": planned["practice"], "question": row["question"]}
+        change = {"from": stands, "to": row["rating"], "revision": revision}
+        record(connection, row["session"], row["stored_at"], "revised", detail | change)
+        stands = row["rating"]
+    return {"question": row["question"], "rating": stands, "revision": revision}
 
 
 def history_of(connection: Connection, key: Mapping[str, Any]) -> list[RowMapping]:

@@ -172,13 +172,15 @@ def attempt(connection: Connection, job: Job) -> tuple[Any, BaseException | None
 
     Raises the error if SQLite has ended the whole transaction over it, as it does when the disk is full.
     """
-    savepoint = connection.begin_nested()
+    sqlite: Any = connection.connection.driver_connection  # SQLAlchemy's own savepoints take longer than a commit
+    sqlite.execute("SAVEPOINT job")
     try:
         result = job.work(connection)
-        savepoint.commit()
+        sqlite.execute("RELEASE job")
     except BaseException as error:
-        if not connection.connection.driver_connection.in_transaction:  # type: ignore[union-attr]
+        if not sqlite.in_transaction:
             raise
-        savepoint.rollback()
+        sqlite.execute("ROLLBACK TO job")
+        sqlite.execute("RELEASE job")
         return None, error
     return result, None

@@ -1,7 +1,7 @@
 """What a participant's page holds at each step: one dict, shown as HTML or sent as JSON. Its texts are translated."""
 
 import re
-from collections.abc import Collection
+from collections.abc import Collection, Sequence
 from typing import Any
 from urllib.parse import quote, urlencode
 
@@ -12,7 +12,7 @@ from study_server import screen_check, texts
 from study_server.language import Words, offered, words
 from study_server.manifest import BuiltStudy
 from study_server.pictures import picture_facts
-from study_server.sessions import unanswered
+from study_server.sessions import Session, unanswered
 from study_server.settings import CHECK_NAME, Question, Survey
 from study_server.tokens import External
 
@@ -72,8 +72,10 @@ def frame(study: BuiltStudy, mode: str, token: str, step: str, language: str) ->
     return {"step": step, "title": title, "mode": mode, "here": f"/s/{token}", "language": language}
 
 
-def page(connection: Connection, study: BuiltStudy, session: RowMapping) -> dict[str, Any]:
-    """The page where this session stands."""
+def page(
+    connection: Connection, study: BuiltStudy, session: Session, waiting: Sequence[RowMapping] = ()
+) -> dict[str, Any]:
+    """The page where this session stands. `waiting`: the presentations due next, if the caller has them at hand."""
     step = str(session["step"])
     survey = study.settings.survey
     say = words(study.settings, session["language"])
@@ -88,7 +90,7 @@ def page(connection: Connection, study: BuiltStudy, session: RowMapping) -> dict
     elif step == "ready":
         data["trials"] = trials(study)
     elif step in ("practice", "trials"):
-        data |= trial_page(connection, study, session, say)
+        data |= trial_page(study, waiting or unanswered(connection, session["id"], 1 + looked_ahead(study)), say)
     elif step == "comments":
         data["question"] = say(survey.comments)
     elif step in ("done", "screened_out"):
@@ -109,7 +111,7 @@ def instructions(study: BuiltStudy, say: Words) -> list[str]:
     return [filled(text, study, say) for text in told]
 
 
-def last_page(survey: Survey, session: RowMapping, say: Words) -> dict[str, Any]:
+def last_page(survey: Survey, session: Session, say: Words) -> dict[str, Any]:
     """After the last thing asked: thanks, the code, the way back."""
     code = session["completion_code"] if session["step"] == "done" else survey.prolific.screened_out
     return {
@@ -131,19 +133,23 @@ def trials(study: BuiltStudy) -> int:
     return len(study.stimuli) * blocks
 
 
-def trial_page(connection: Connection, study: BuiltStudy, session: RowMapping, say: Words) -> dict[str, Any]:
+def looked_ahead(study: BuiltStudy) -> int:
+    """How many trials after the one that is due a page holds."""
+    return max(study.settings.survey.unsaved_ahead, 1)
+
+
+def trial_page(study: BuiltStudy, waiting: Sequence[RowMapping], say: Words) -> dict[str, Any]:
     """The picture that is due and the questions under it, and the same for the next ones of this step.
 
     `ahead` is what the browser may show before the answers to the earlier ones are saved, and fetches beforehand.
     """
-    limit = study.settings.survey.unsaved_ahead
-    due, *later = unanswered(connection, session["id"], limit=1 + max(limit, 1))
+    due, *later = waiting
     return {
         **trial_facts(study, due, say),
         "practice": due["practice"],
         "trials": study.settings.survey.practice if due["practice"] else trials(study),
         "ahead": [trial_facts(study, row, say) for row in later if row["practice"] == due["practice"]],
-        "unsaved_ahead": limit,
+        "unsaved_ahead": study.settings.survey.unsaved_ahead,
         "scaled_pictures": study.settings.survey.scaled_pictures,
     }
 

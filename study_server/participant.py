@@ -4,18 +4,22 @@ A participant has one address, and the server holds where they are in it: refres
 browser show the same step. A form that arrives for a step already left changes nothing.
 """
 
+import asyncio
 import time
-from collections.abc import Collection
+from collections.abc import Collection, Sequence
 from typing import Annotated, Any
 
 from fastapi import APIRouter, Depends, Request, Response
 from fastapi.responses import JSONResponse, RedirectResponse
+from pydantic_core import to_json
 from sqlalchemy import Connection, RowMapping
+from starlette.concurrency import run_in_threadpool
 from starlette.exceptions import HTTPException
 
 from study_server import answers, pages, sessions, steps
 from study_server.gates import gate
 from study_server.rate_limit import retry_after
+from study_server.sessions import Session
 from study_server.site import AtSite, Fields, Site, answer, site_of, sorry, told, visitor_language
 from study_server.texts import N_
 from study_server.tokens import External, belongs_to, is_valid, make_token
@@ -28,7 +32,7 @@ CROWD = N_("Many people are starting at this moment; please wait a few seconds a
 CHANGED = N_("This study has changed since you began; please open the link again.")
 
 
-def own_token(request: Request, site: AtSite, token: str) -> str:
+async def own_token(request: Request, site: AtSite, token: str) -> str:
     """The token in the address: made by this server, and not asked about too often. The database is not needed for it.
 
     Raises `HTTPException` 404 or 429.
@@ -117,20 +121,28 @@ def client_facts(request: Request, asked: Collection[str]) -> dict[str, str]:
 
 
 @router.post("/s/{token}/ratings")
-def ratings(request: Request, site: AtSite, token: Token, sent: answers.Posted) -> Response:
+async def ratings(request: Request, site: AtSite, token: Token, sent: answers.Posted) -> Response:
     """Stores one picture's answers; replies when they are on disk, with the page that comes next."""
     now = time.time()
+
+    def save(connection: Connection) -> dict[str, Any]:
+        session = known(request, connection, token, lock=True)
+        ahead = pages.looked_ahead(site.study)
+        near = sessions.near(connection, session["id"], sent.place, 1 + ahead)
+        planned = answers.accepted(site.study, session, near, sent)
+        saved = answers.store(connection, planned, sent, now)
+        waiting: Sequence[RowMapping] = [row for row in near if row["place"] > sent.place]
+        if planned["answered_at"] is not None:
+            waiting = sessions.unanswered(connection, session["id"], 1 + ahead)
+        session = steps.after_answers(connection, site.study, session, waiting, now)
+        return {"saved": saved, "next": pages.page(connection, site.study, session, waiting)}
+
     try:
-        with site.database.writing() as connection:
-            session = known(request, connection, token, lock=True)
-            planned = answers.accepted(connection, site.study, session, sent)
-            saved = answers.store(connection, planned, sent, now)
-            steps.after_answers(connection, site.study, session, now)
-            following = pages.page(connection, site.study, known(request, connection, token))
+        reply = await asyncio.wrap_future(site.database.submit(save))
     except answers.Refused as refused:
-        note_refusal(site, token, sent, refused, now)
+        await run_in_threadpool(note_refusal, site, token, sent, refused, now)
         return JSONResponse({"error": told(request, refused.sentence, **refused.blanks)}, refused.http_status)
-    return JSONResponse({"saved": saved, "next": following})
+    return Response(to_json(reply), media_type="application/json")
 
 
 @router.get("/s/{token}/withdraw")
@@ -184,7 +196,7 @@ def find(request: Request, connection: Connection, token: str, *, lock: bool = F
     return session
 
 
-def known(request: Request, connection: Connection, token: str, *, lock: bool = False) -> RowMapping:
+def known(request: Request, connection: Connection, token: str, *, lock: bool = False) -> Session:
     """The started session under `token`, or `Refused`."""
     session = find(request, connection, token, lock=lock)
     if session is None:

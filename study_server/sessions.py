@@ -2,11 +2,11 @@
 
 import secrets
 from collections import Counter
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import asdict, dataclass, field
 from typing import Any
 
-from sqlalchemy import Connection, RowMapping, and_, case, func, insert, select, update
+from sqlalchemy import Connection, RowMapping, and_, bindparam, case, func, insert, select, update
 from sqlalchemy.sql.elements import ColumnElement
 
 from study_server import schema
@@ -37,10 +37,29 @@ def release_s(study: BuiltStudy) -> float:
     return study.settings.survey.release_after_minutes * 60
 
 
+Session = RowMapping | dict[str, Any]
+"""A session's row, as read or as just changed."""
+
+KNOWN = select(schema.sessions).where(sessions.token == bindparam("token"))
+WAITING = (
+    select(schema.presentations)
+    .where(presentations.session == bindparam("session"), presentations.answered_at.is_(None))
+    .order_by(presentations.place)
+    .limit(bindparam("most"))
+)
+NEAR = (
+    select(schema.presentations)
+    .where(presentations.session == bindparam("session"), presentations.place >= bindparam("first"))
+    .order_by(presentations.place)
+    .limit(bindparam("most"))
+)
+MOVED_ON = update(schema.sessions).where(sessions.id == bindparam("session"))
+"""Statements that a save needs, built once: building one takes longer than SQLite takes to run it."""
+
+
 def find(connection: Connection, token: str, *, lock: bool = False) -> RowMapping | None:
     """The session under this token, if it was started. `lock`: nobody else changes it meanwhile."""
-    query = select(schema.sessions).where(sessions.token == token)
-    found = connection.execute(query.with_for_update() if lock else query)
+    found = connection.execute(KNOWN.with_for_update() if lock else KNOWN, {"token": token})
     return found.mappings().one_or_none()
 
 
@@ -157,10 +176,11 @@ def planned(study: BuiltStudy, session: str, trials: list[dict[str, Any]]) -> li
     return plan
 
 
-def advance(connection: Connection, session: RowMapping, now: float, **changes: Any) -> None:
-    """Store `changes` of the session's row and that it was heard of."""
+def advance(connection: Connection, session: Session, now: float, **changes: Any) -> Session:
+    """Store `changes` of the session's row and that it was heard of; the session as it is then."""
     values = {"seen_at": now, **changes}
-    connection.execute(update(schema.sessions).where(sessions.id == session["id"]).values(values))
+    connection.execute(MOVED_ON, {"session": session["id"], **values})
+    return {**session, **values}
 
 
 def record(connection: Connection, session: str, now: float, kind: str, detail: Mapping[str, Any]) -> None:
@@ -168,15 +188,15 @@ def record(connection: Connection, session: str, now: float, kind: str, detail: 
     connection.execute(insert(schema.events).values(session=session, at=now, kind=kind, detail=dict(detail)))
 
 
-def unanswered(connection: Connection, session: str, limit: int) -> list[RowMapping]:
+def unanswered(connection: Connection, session: str, limit: int) -> Sequence[RowMapping]:
     """The next `limit` presentations that still wait for their ratings; the first is where the participant is."""
-    query = (
-        select(schema.presentations)
-        .where(presentations.session == session, presentations.answered_at.is_(None))
-        .order_by(presentations.place)
-        .limit(limit)
-    )
-    return list(connection.execute(query).mappings())
+    return connection.execute(WAITING, {"session": session, "most": limit}).mappings().all()
+
+
+def near(connection: Connection, session: str, place: int, limit: int) -> Sequence[RowMapping]:
+    """The presentation at `place`, the one before it and the `limit` after it, as far as there are any."""
+    wanted = {"session": session, "first": place - 1, "most": limit + 2}
+    return connection.execute(NEAR, wanted).mappings().all()
 
 
 def expected_and_stored(connection: Connection, session: str) -> tuple[int, int]:

@@ -102,7 +102,12 @@ def site_of(request: Request) -> Site:
     return site
 
 
-AtSite = Annotated[Site, Depends(site_of)]
+async def at_site(request: Request) -> Site:
+    """The same for endpoints; asynchronous, because what is not is run in another thread, which costs more than it."""
+    return site_of(request)
+
+
+AtSite = Annotated[Site, Depends(at_site)]
 
 
 async def posted_fields(request: Request) -> dict[str, str]:

@@ -1,14 +1,14 @@
 """What moves a session from one step to the next."""
 
 import secrets
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 
 from sqlalchemy import Connection, RowMapping, select
 
 from study_server.counts import failed_checks
 from study_server.manifest import BuiltStudy
 from study_server.screen_check import leave_screen
-from study_server.sessions import advance, after_about, expected_and_stored, record, unanswered
+from study_server.sessions import Session, advance, after_about, expected_and_stored, record
 from study_server.settings import Survey
 
 CODE_LETTERS = "ABCDEFGHJKLMNPQRSTUVWXYZ23456789"
@@ -17,7 +17,6 @@ CODE_LETTERS = "ABCDEFGHJKLMNPQRSTUVWXYZ23456789"
 CODE_LENGTH = 8
 LONGEST_TEXT = 10_000
 
-Session = RowMapping
 Values = Mapping[str, str]
 
 
@@ -48,7 +47,7 @@ def leave_comments(connection: Connection, _study: BuiltStudy, session: Session,
     advance(connection, session, now, step="done", comments=values.get("comments", "").strip()[:LONGEST_TEXT] or None)
 
 
-LEAVE: dict[str, Callable[[Connection, BuiltStudy, Session, Values, float], None]] = {
+LEAVE: dict[str, Callable[[Connection, BuiltStudy, RowMapping, Values, float], None]] = {
     "about": leave_about,
     "screen": leave_screen,
     "instructions": leave_instructions,
@@ -57,18 +56,21 @@ LEAVE: dict[str, Callable[[Connection, BuiltStudy, Session, Values, float], None
 }
 
 
-def after_answers(connection: Connection, study: BuiltStudy, session: Session, now: float) -> None:
-    """Moves on when practice or the trials are through; the completion code is made when every rating is stored."""
-    waiting = unanswered(connection, session["id"], limit=1)
+def after_answers(
+    connection: Connection, study: BuiltStudy, session: Session, waiting: Sequence[RowMapping], now: float
+) -> Session:
+    """Moves on when practice or the trials are through; the completion code is made when every rating is stored.
+
+    `waiting`: what is to be answered next. Gives the session as it is then.
+    """
     if session["step"] == "practice" and (not waiting or not waiting[0]["practice"]):
-        advance(connection, session, now, step="ready")
-    elif session["step"] == "trials" and not waiting:
-        finish(connection, study, session, now)
-    else:
-        advance(connection, session, now)
+        return advance(connection, session, now, step="ready")
+    if session["step"] == "trials" and not waiting:
+        return finish(connection, study, session, now)
+    return advance(connection, session, now)
 
 
-def finish(connection: Connection, study: BuiltStudy, session: Session, now: float) -> None:
+def finish(connection: Connection, study: BuiltStudy, session: Session, now: float) -> Session:
     """Closes the session. The ratings are counted, not assumed: no code without every expected row."""
     expected, stored = expected_and_stored(connection, session["id"])
     if stored != expected:
@@ -77,8 +79,8 @@ def finish(connection: Connection, study: BuiltStudy, session: Session, now: flo
     failed = connection.scalar(select(checks.c.checks_failed).where(checks.c.session == session["id"])) or 0
     code = completion_code(survey, failed >= survey.failed_checks)
     step = "comments" if survey.comments else "done"
-    advance(connection, session, now, step=step, finished_at=now, completion_code=code)
     record(connection, session["id"], now, "finished", {})
+    return advance(connection, session, now, step=step, finished_at=now, completion_code=code)
 
 
 def completion_code(survey: Survey, failed: bool) -> str:
