@@ -154,6 +154,6 @@ def recent_ratings(connection: Connection, study: str, mode: str, now: float) ->
 
 
 def active(connection: Connection, study: str, mode: str, now: float, release_s: float) -> int:
-    """How many are under way."""
-    people = summaries(study, mode, now, release_s).order_by(None).subquery()
-    return connection.scalar(select(func.count()).select_from(people).where(people.c.status == "active")) or 0
+    """How many are under way: only that, for a transaction that others wait for."""
+    mine = and_(sessions.study == study, sessions.mode == mode, status(now, release_s) == "active")
+    return connection.scalar(select(func.count()).select_from(schema.sessions).where(mine)) or 0
