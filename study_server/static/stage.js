@@ -13,6 +13,7 @@ export class Stage {
     this.isShrinkingRefused = false;
     this.notice = paragraph("does-not-fit", words.doesNotFit);
     window.addEventListener("resize", () => this.#image && this.#fit());
+    followRatio();
   }
 
   // Put this picture on the page as soon as it is there and can be seen; resolves to its hash.
@@ -66,6 +67,16 @@ export class Stage {
       }
     }
   }
+}
+
+// A window that is moved to a screen of another ratio may keep its size: nothing but this tells of it.
+function followRatio() {
+  const media = matchMedia(`(resolution: ${devicePixelRatio}dppx)`);
+  const changed = () => {
+    window.dispatchEvent(new Event("resize"));
+    followRatio();
+  };
+  media.addEventListener("change", changed, { once: true });
 }
 
 function paragraph(id, sentence) {

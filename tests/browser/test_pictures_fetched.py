@@ -54,9 +54,10 @@ def test_a_picture_that_arrives_badly_is_asked_for_again(page: Page, tmp_path: P
             data = bytearray(httpx.get(url + first["url"]).content)
             data[-20] ^= 1
             bad = [{"body": bytes(data), "headers": {"Cache-Control": "max-age=9999"}}] * 2
-        replies = iter(bad)
+        replies, past_the_cache = iter(bad), []
 
         def badly(route: Route) -> None:
+            past_the_cache.append(route.request.headers.get("cache-control") == "no-cache")
             reply = next(replies, None)
             route.fulfill(**reply) if reply else route.continue_()
 
@@ -66,6 +67,7 @@ def test_a_picture_that_arrives_badly_is_asked_for_again(page: Page, tmp_path: P
         expect(page.locator(".question input").first).to_be_enabled(timeout=20_000)
         assert np.array_equal(*shown_and_rendered(page, study))
         assert next(replies, None) is None
+        assert past_the_cache == ([False, True, False] if bad else [])  # what is damaged may lie in the browser's cache
 
 
 def test_each_picture_is_asked_for_once(page: Page, tmp_path: Path) -> None:

@@ -66,6 +66,21 @@ def displays(study: Path) -> list[dict[str, Any]]:
     return found
 
 
+def test_a_window_moved_to_another_screen_shows_file_pixels_there(page: Page, tmp_path: Path) -> None:
+    study = short_study(tmp_path)
+    with served(study) as url:
+        open_trials(page, url)
+        metrics = {"width": 1280, "height": 800, "mobile": False}
+        inspector = page.context.new_cdp_session(page)
+        inspector.send("Emulation.setDeviceMetricsOverride", {**metrics, "deviceScaleFactor": 2})
+        inspector.send("Page.captureScreenshot")  # draws a frame, which a window without a screen does not by itself
+        expect(page.locator("#stage img")).to_have_css("width", "48px")
+        rate(page, "44")
+        saved(page)
+    (row,) = displays(study)
+    assert (row["device_pixel_ratio"], row["drawn_width_px"], row["scaled"]) == (2, 96, 0)
+
+
 def resize(page: Page, width: int, height: int = 800) -> None:
     """Make the window so large."""
     page.set_viewport_size({"width": width, "height": height})
