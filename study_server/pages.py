@@ -68,7 +68,7 @@ def declined_page(study: BuiltStudy, mode: str, token: str, language: str, exter
 
 def frame(study: BuiltStudy, mode: str, token: str, step: str, language: str) -> dict[str, Any]:
     """What every page of a participant has."""
-    title = words(study.settings, language)(study.settings.survey.title or study.title)
+    title = words(study.settings, language)(study.settings.named()["title"])
     return {"step": step, "title": title, "mode": mode, "here": f"/s/{token}", "language": language}
 
 

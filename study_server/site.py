@@ -17,7 +17,7 @@ from jinja2.runtime import Context
 from starlette.exceptions import HTTPException
 
 from study_server.database import Database
-from study_server.language import catalogue, negotiated
+from study_server.language import catalogue, negotiated, words
 from study_server.manifest import BuiltStudy
 from study_server.rate_limit import Limits
 from study_server.texts import N_
@@ -159,10 +159,14 @@ def answer(request: Request, template: str, data: Mapping[str, Any], http_status
 
 def sorry(request: Request, http_status: int, sentence: str, **blanks: object) -> Response:
     """An error in one sentence, {blanks} filled in, in the language of whom it is for."""
-    language = language_of(request)
-    say = catalogue(language).gettext
-    title = say(NOT_FOUND if http_status == 404 else SORRY)
-    data = {"step": "error", "title": title, "error": told(request, sentence, **blanks), "language": language}
+    language, settings = language_of(request, sentence), site_of(request).study.settings
+    data = {
+        "step": "error",
+        "title": words(settings, language)(settings.named()["title"]),
+        "heading": catalogue(language).gettext(NOT_FOUND if http_status == 404 else SORRY),
+        "error": told(request, sentence, **blanks),
+        "language": language,
+    }
     return answer(request, "sorry.html", data, http_status)
 
 
@@ -171,16 +175,18 @@ NOT_FOUND, SORRY = N_("Not found"), N_("Sorry")
 
 def told(request: Request, sentence: str, **blanks: object) -> str:
     """`sentence` with {blanks} filled in, in the language of whom it is for."""
-    text = catalogue(language_of(request)).gettext(sentence)
+    text = catalogue(language_of(request, sentence)).gettext(sentence)
     return text.format(**blanks) if blanks else text
 
 
-def language_of(request: Request) -> str:
-    """Of the session that the endpoint found (`request.state.language`), else of the visitor. Admin pages: English."""
-    if request.url.path.startswith("/admin"):
-        return "en"
-    found: str | None = getattr(request.state, "language", None)
-    return found or visitor_language(request)
+def language_of(request: Request, sentence: str) -> str:
+    """Of the session that the endpoint found (`request.state.language`), else of the visitor.
+
+    English on admin pages, and where `sentence` is in no other language, being for programmers: no page has two.
+    """
+    found: str = getattr(request.state, "language", "") or visitor_language(request)
+    is_translated = catalogue(found).gettext(sentence) != sentence
+    return found if is_translated and not request.url.path.startswith("/admin") else "en"
 
 
 def visitor_language(request: Request, chosen: str = "") -> str:

@@ -221,6 +221,8 @@ def test_errors_are_in_the_language_of_the_session_or_of_the_browser(tmp_path: P
         page = httpx.get(f"{url}/nowhere", headers={**HTML, "Accept-Language": "es"})
         assert '<html lang="es">' in page.text and "Esta página no existe." in page.text
         assert "There is no such page." in httpx.get(f"{url}/admin/nowhere", headers=french).json()["error"]
+        wrong = httpx.delete(f"{url}/s/nobody", headers={**HTML, "Accept-Language": "es"})  # for programmers
+        assert '<html lang="en">' in wrong.text and "Sorry" in wrong.text
         person = Participant(url)
         person.post("consent", language="de")
         person.post("about", hand=TEXTS["en"]["left"])
