@@ -5,6 +5,7 @@ Over bare sockets, and with simulated raters over a network that loses requests 
 
 import contextlib
 import json
+import select
 import socket
 import struct
 import time
@@ -132,8 +133,7 @@ def test_a_body_shorter_than_announced_and_one_longer(
         connection.shutdown(socket.SHUT_WR)
         assert b" 200 " not in received(connection)
     with connected(person, head(person, f"Content-Length: {len(content) - 10}") + content) as connection:
-        [(status, _)] = replies(connection, 1)
-    assert status == 422
+        assert connection.recv(12).startswith(b"HTTP/1.1 4")  # to the cut JSON, or to what seems another request
     assert answers_of(study_served[0], person) == []
 
 
@@ -175,9 +175,10 @@ def test_a_body_that_stays_away_is_not_waited_for_without_end(
             assert status == 408
             assert "took more than" in data["error"]
         with connected(person, head(person, "Content-Length: 500", step=step)) as trickling:
-            for _ in range(50):  # each byte is in time, the whole is not
+            for _ in range(400):  # each byte is in time, the whole is not
                 trickling.sendall(b" ")
-                time.sleep(0.01)
+                if select.select([trickling], [], [], 0.01)[0]:
+                    break
             assert replies(trickling, 1)[0][0] == 408
         assert person.to_end()
     sound(default_url(study))
