@@ -231,7 +231,7 @@ PEOPLE = {"people": ",d", "saves_per_s": ",.0f", "p50_ms": ".1f", "p99_ms": ".1f
 
 @click.command(help=__doc__)
 @click.option("--folder", type=click.Path(path_type=Path), help="On the disk to be measured [default: temporary].")
-@click.option("--people", default=32, show_default=True, help="Without think time.")
+@click.option("--people", default=64, show_default=True, help="Without think time.")
 @click.option("--rounds", default=3, show_default=True)
 @click.option("--seconds", default=4.0, show_default=True, help="Of each measurement.")
 @click.option("--think", default=4.0, show_default=True, help="Median think time per picture, seconds.")
@@ -254,7 +254,7 @@ def main(folder: Path | None, people: int, rounds: int, seconds: float, think: f
         ]
         print_table(report["throughput"], THROUGHPUT)
         most = report["throughput"][0]["saves_per_s"] * think * math.exp(SIGMA**2 / 2)
-        sizes = [round(most * share / 10) for share in range(2, 12)]
+        sizes = [round(most * share / 10) for share in range(1, 11)]
         report["people"] = people_at_once(
             Row("SQLite", f"sqlite:///{folder}/usual.sqlite"), usual, folder, sizes, think, 3 * seconds
         )

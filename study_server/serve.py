@@ -23,6 +23,8 @@ from study_server.workers import run_workers
 FINISH_S = 20
 """How long requests that are under way are waited for at the end: a body that never comes must not keep the server."""
 
+MOST_FILES = 65_536
+
 START_S = 60
 """How long a worker may take to start before it is given up and replaced."""
 
@@ -57,6 +59,7 @@ def serve(
     database = app.state.site.database
     if workers > 1 and database.is_sqlite:
         raise BadInput(f"--workers {workers}: SQLite has one writer; give a PostgreSQL database with --database")
+    allow_many_files()
     with listening(host, port) as listener:
         announce(app, host, address_of(listener), proxies=proxies, workers=workers)
         if workers > 1:
@@ -115,6 +118,19 @@ def uvicorn_settings(proxies: Sequence[str] = ()) -> dict[str, Any]:
         "timeout_graceful_shutdown": FINISH_S,
         "timeout_worker_healthcheck": START_S,
     }
+
+
+def allow_many_files() -> None:
+    """Every connection is an open file, and systems usually allow 1,024 until a program asks for more."""
+    if sys.platform == "win32":
+        return
+    import resource
+
+    soft, hard = resource.getrlimit(resource.RLIMIT_NOFILE)
+    most = MOST_FILES if hard == resource.RLIM_INFINITY else min(MOST_FILES, hard)
+    if soft != resource.RLIM_INFINITY and soft < most:
+        with contextlib.suppress(ValueError, OSError):  # macOS has a lower limit still
+            resource.setrlimit(resource.RLIMIT_NOFILE, (most, hard))
 
 
 def checked_proxies(proxies: Sequence[str]) -> Sequence[str]:
