@@ -13,7 +13,7 @@ import pytest
 from playwright.sync_api import BrowserContext, Dialog, Error, Page, Request, Route, expect
 from steps import answerable, rate, ratings_by_trial
 from survey_client import Participant
-from trial_pages import open_trials, short_study
+from trial_pages import open_trials, saved, short_study
 
 pytestmark = pytest.mark.browser
 
@@ -209,10 +209,12 @@ def test_two_tabs_share_one_outbox(page: Page, context: BrowserContext, url: str
     expect(page.locator("#saved")).to_have_text("Saved")
     rate(other, "44")
     answerable(other, "4 of 6")
+    saved(other)
     page.unroute("**/ratings")
     page.bring_to_front()
     rate(page, "55")  # the first tab still shows trial 3: another answer to it, and then where the other one is
     answerable(page, "4 of 6")
+    saved(page)
     assert [(row["place"], row["rating"]) for row in stored(study)] == [
         *((0, 2), (0, 6), (1, 3), (1, 7), (2, 4), (2, 4), (2, 5), (2, 5))
     ]
