@@ -41,17 +41,16 @@ Session = RowMapping | dict[str, Any]
 """A session's row, as read or as just changed."""
 
 KNOWN = select(schema.sessions).where(sessions.token == bindparam("token"))
-WAITING = (
-    select(schema.presentations)
-    .where(presentations.session == bindparam("session"), presentations.answered_at.is_(None))
-    .order_by(presentations.place)
-    .limit(bindparam("most"))
+KNOWN_AND_LOCKED = KNOWN.with_for_update()
+TRIAL = select(
+    presentations.session, presentations.place, presentations.practice, presentations.trial, presentations.stimulus,
+    presentations.stimulus_sha256, presentations.questions, presentations.check_expected, presentations.answered_at,
+).order_by(presentations.place)  # fmt: skip
+WAITING = TRIAL.where(presentations.session == bindparam("session"), presentations.answered_at.is_(None)).limit(
+    bindparam("most")
 )
-NEAR = (
-    select(schema.presentations)
-    .where(presentations.session == bindparam("session"), presentations.place >= bindparam("first"))
-    .order_by(presentations.place)
-    .limit(bindparam("most"))
+NEAR = TRIAL.where(presentations.session == bindparam("session"), presentations.place >= bindparam("first")).limit(
+    bindparam("most")
 )
 MOVED_ON = update(schema.sessions).where(sessions.id == bindparam("session"))
 """Statements that a save needs, built once: building one takes longer than SQLite takes to run it."""
@@ -59,7 +58,7 @@ MOVED_ON = update(schema.sessions).where(sessions.id == bindparam("session"))
 
 def find(connection: Connection, token: str, *, lock: bool = False) -> RowMapping | None:
     """The session under this token, if it was started. `lock`: nobody else changes it meanwhile."""
-    found = connection.execute(KNOWN.with_for_update() if lock else KNOWN, {"token": token})
+    found = connection.execute(KNOWN_AND_LOCKED if lock else KNOWN, {"token": token})
     return found.mappings().one_or_none()
 
 
