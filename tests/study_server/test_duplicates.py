@@ -8,8 +8,8 @@ from running_survey import Running
 from stored import sound
 from survey_client import Participant
 
-GROUPS = [10, pytest.param(1700, marks=[pytest.mark.long, pytest.mark.timeout(900)])]
-"""Of 2 to 10 equal posts each: 60 in all, or 10,000."""
+GROUPS = [10, pytest.param(570, marks=[pytest.mark.long, pytest.mark.timeout(900)])]
+"""Of 2 to 10 equal posts each: 60, or 3,400, on each kind of server."""
 
 QUESTIONS = ("translucent", "realistic")
 

@@ -217,7 +217,7 @@ def test_posts_in_one_breath_are_answered_in_their_order(
     assert answers_of(study_served[0], person) == [[2], [2], [5], [5]]
 
 
-@pytest.mark.parametrize("raters", [6, pytest.param(300, marks=pytest.mark.long)])
+@pytest.mark.parametrize("raters", [6, pytest.param(100, marks=pytest.mark.long)])
 def test_requests_lost_on_the_way_and_replies_lost_on_the_way_back(tmp_path: Path, raters: int) -> None:
     study = write_study(tmp_path / "study")
     with served(study) as url, faulty_network(url) as network:

@@ -28,7 +28,7 @@ def in_two_tabs(person: Participant, first: int, second: int) -> list[Sent]:
     return [(f"{person.here}/ratings", body) for body in bodies]
 
 
-@pytest.mark.parametrize("people", [3, pytest.param(200, marks=pytest.mark.long)])
+@pytest.mark.parametrize("people", [3, pytest.param(60, marks=pytest.mark.long)])
 def test_of_two_tabs_answers_the_one_stored_later_counts(running: Running, people: int) -> None:
     """formr v0.25.7: 18 people were given a page twice by two tabs that raced."""
     random = Random(people)
@@ -97,7 +97,7 @@ def test_the_last_picture_answered_in_many_tabs_makes_one_code(running: Running)
     assert len(stored.answers[session][person.state["place"], "realistic"]) == 6
 
 
-@pytest.mark.parametrize("people", [2, pytest.param(100, marks=pytest.mark.long)])
+@pytest.mark.parametrize("people", [2, pytest.param(30, marks=pytest.mark.long)])
 def test_thirty_first_hits_of_one_person_are_one_session(running: Running, people: int) -> None:
     """deliberate-lab#571: one recruit, several sessions."""
     before = sum(sound(running.database).places_taken)

@@ -161,7 +161,7 @@ def takes_nobody_more(url: str) -> bool:
     return False
 
 
-@pytest.mark.parametrize("restarts", [2, pytest.param(40, marks=[pytest.mark.long, pytest.mark.timeout(900)])])
+@pytest.mark.parametrize("restarts", [2, pytest.param(20, marks=[pytest.mark.long, pytest.mark.timeout(900)])])
 def test_restarts_under_load_lose_nobody(tmp_path: Path, restarts: int) -> None:
     study = write_study(tmp_path / "study", 9)
 
