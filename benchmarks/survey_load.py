@@ -247,7 +247,9 @@ def main(folder: Path | None, people: int, rounds: int, seconds: float, think: f
         saves = recorded(many, folder)
         report: dict[str, Any] = {"machine": machine(folder), "statements": [sql for sql, _ in last_save(saves[1])]}
         rows = [Row("SQLite", f"sqlite:///{folder}/0.sqlite")]
-        rows += [Row(f"SQLite, disk +{ms} ms", f"sqlite:///{folder}/{ms}.sqlite", float(ms)) for ms in slow.split(",")]
+        rows += [
+            Row(f"SQLite, disk +{ms} ms", f"sqlite:///{folder}/{ms}.sqlite", float(ms)) for ms in slow.split(",") if ms
+        ]
         postgres_rows = rows_on_postgres(stack) if postgres else []
         report["throughput"] = [
             throughput(row, many, folder, saves, people, rounds, seconds) for row in [*rows, *postgres_rows]
@@ -259,9 +261,20 @@ def main(folder: Path | None, people: int, rounds: int, seconds: float, think: f
             Row("SQLite", f"sqlite:///{folder}/usual.sqlite"), usual, folder, sizes, think, 3 * seconds
         )
         print_table(report["people"], PEOPLE)
+        click.echo(f"\n{limit_words(report['people'])}")
         click.echo(f"\n{json.dumps(report['machine'])}; a save is {len(report['statements'])} statements")
     if out:
         out.write_text(json.dumps(report, indent=1))
+
+
+def limit_words(results: list[dict[str, Any]]) -> str:
+    """Between which crowds the 99th percentile of a save passed the goal."""
+    kept = [result["people"] for result in results if result["p99_ms"] <= GOAL_MS]
+    passed = [result["people"] for result in results if result["p99_ms"] > GOAL_MS]
+    if not passed:
+        return f"The 99th percentile of a save stays below {GOAL_MS:.0f} ms up to {kept[-1]} people."
+    before = kept[-1] if kept else 0
+    return f"The 99th percentile of a save passes {GOAL_MS:.0f} ms between {before} and {passed[0]} people."
 
 
 def last_save(transactions: list[Transaction]) -> Transaction:
