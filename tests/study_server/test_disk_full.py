@@ -28,7 +28,7 @@ PAGE = 4096
 @pytest.fixture
 def disk(tmp_path: Path) -> Iterator[SmallDisk]:
     """With a built study on it."""
-    with small_disk(tmp_path / "disk", copy_of=write_study(tmp_path / "study"), size=2_000_000) as mounted:
+    with small_disk(tmp_path / "disk", copy_of=write_study(tmp_path / "study"), size=16_000_000) as mounted:
         yield mounted
 
 
