@@ -27,7 +27,7 @@ from schemathesis.specs.openapi.checks import (
     status_code_conformance,
 )
 from study_fixture import write_study
-from survey_client import JSON, Participant
+from survey_client import ABOUT, JSON, Participant
 
 from study_server.app import create_app
 from study_server.openapi import ADDRESSES
@@ -45,13 +45,14 @@ COUNTS = [5, pytest.param(500, marks=[pytest.mark.long, pytest.mark.timeout(3600
 """Examples of each operation, well-formed and again malformed."""
 
 STRANGE = (
-    "", "a\0b", "\ud800", "..", "../../ratings.sqlite", "'; DROP TABLE ratings; --", "{{7*7}}", "9" * 5000, "1e999",
-    "NaN", "é" * 300, "\r\nSet-Cookie: a=b", "=1+1", "٣", "\N{RIGHT-TO-LEFT OVERRIDE}", "a/b", "%2e%2e%2f", "%00",
+    "inside\0NUL", "", "\ud800", "..", "../../ratings.sqlite", "'; DROP TABLE ratings; --", "{{7*7}}", "9" * 5000,
+    "1e999", "NaN", "é" * 300, "\r\nSet-Cookie: a=b", "=1+1", "٣", "\N{RIGHT-TO-LEFT OVERRIDE}", "a/b", "%2e%2e%2f", "%00",
 )  # fmt: skip
 """Text that has broken programs."""
 
 STRANGE_JSON = (
-    None, True, 10**400, -(2**63), 2**31, 1e308, [], {}, [[["deep"]]], {"a": {"b": "c"}}, "4", 4.5, *STRANGE,
+    *STRANGE[:1], None, True, 10**400, -(2**63), 2**31, 1e308, [], {}, [[["deep"]]], {"a": {"b": "c"}}, "4", 4.5,
+    *STRANGE[1:],
 )  # fmt: skip
 
 
@@ -71,7 +72,9 @@ class Served:
 
 @pytest.fixture(scope="module", params=["sqlite", "postgres"])
 def served_study(request: pytest.FixtureRequest, tmp_path_factory: pytest.TempPathFactory) -> Iterator[Served]:
-    study = write_study(tmp_path_factory.mktemp("fuzz"), survey={"checks": 1, "record": ["address", "browser"]})
+    about = [{"name": name, "text": f"{name}?"} for name in (*ABOUT, "job")]  # free text
+    survey = {"about": about, "checks": 1, "record": ["address", "browser"]}
+    study = write_study(tmp_path_factory.mktemp("fuzz"), survey=survey)
     with contextlib.ExitStack() as stack:
         url = None
         if request.param == "postgres":
@@ -147,7 +150,8 @@ def test_strange_values_at_every_step(served_study: Served) -> None:
     with httpx.Client(base_url=served_study.url, headers=JSON) as client:
         for step, person in served_study.people.items():
             for value in STRANGE_JSON if step in ("consent", "about", "screen", "comments") else STRANGE_JSON[:2]:
-                fields = dict.fromkeys(("age", "comments", "language", "px_per_mm", "plate_1", "STUDY_ID"), value)
+                names = ("job", "comments", "language", "px_per_mm", "plate_1", "STUDY_ID", "SESSION_ID")
+                fields = ABOUT | dict.fromkeys(names, value)
                 body = json.dumps(fields).encode()
                 address = f"{person.here}/{step}"
                 reply = client.post(address, content=body, headers={"Content-Type": "application/json"})
@@ -217,7 +221,7 @@ def test_paths_lead_nowhere_else(served_study: Served) -> None:
         assert raw(served_study.url, "GET", path, headers=served_study.bearer) in (404, 405)
 
 
-METHODS = ("PUT", "PATCH", "DELETE", "OPTIONS", "TRACE", "HEAD", "BREW")
+METHODS = ("PUT", "PATCH", "DELETE", "OPTIONS", "TRACE", "HEAD", "PROPFIND")
 
 
 def test_wrong_methods(served_study: Served) -> None:
