@@ -20,10 +20,10 @@ from typing import Any, BinaryIO
 from sqlalchemy import URL
 from sqlalchemy.engine import make_url
 
-from fakesss.output import check_writable, replacing
 from fakesss.problem import BadInput
 from study_server.database import default_url
 from study_server.engines import BUSY_TIMEOUT_S
+from study_server.staging import staged
 
 
 def file_name(now: float) -> str:
@@ -90,7 +90,8 @@ def backup(study_folder: Path, out: Path | None = None, database_url: str | None
     out = out or study_folder / file_name(time.time())
     if out.exists():
         raise BadInput(f"{out}: is there already; a backup never replaces a file, give another name with -o")
-    check_writable(out)
-    with replacing(out) as waiting:
-        snapshot(source, waiting)
+    if not out.parent.is_dir():
+        raise BadInput(f"{out}: the folder {out.parent} does not exist; make it first")
+    with staged(out.parent) as folder:
+        snapshot(source, folder / out.name)
     return {"file": str(out), "bytes": out.stat().st_size}

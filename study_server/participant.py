@@ -72,16 +72,23 @@ def current_page(
     request: Request, site: Site, connection: Connection, token: str, session: RowMapping | None
 ) -> dict[str, Any]:
     """The page of this session, or the consent page; the study's gate may stand before either."""
+    if session is not None:
+        return session_page(site, connection, session)
+    language = visitor_language(request)
     standing = gate(connection, site.study.identity, site.mode)
-    if session is None:
-        language = visitor_language(request)
-        if standing != "open":
-            return pages.shut_page(site.study, site.mode, token, language, standing)
-        external = External.from_query(request.query_params)
-        return pages.consent_page(site.study, site.mode, token, language, external)
-    if standing == "closed" and session["step"] in sessions.UNDER_WAY:
-        return pages.shut_page(site.study, session["mode"], token, session["language"], standing)
-    return pages.page(connection, site.study, session)
+    if standing != "open":
+        return pages.shut_page(site.study, site.mode, token, language, standing)
+    external = External.from_query(request.query_params)
+    return pages.consent_page(site.study, site.mode, token, language, external)
+
+
+def session_page(
+    site: Site, connection: Connection, session: Session, waiting: Sequence[RowMapping] = ()
+) -> dict[str, Any]:
+    """Where this session stands, `waiting` for its next presentations; a closed study ends it for who is under way."""
+    if session["step"] in sessions.UNDER_WAY and gate(connection, site.study.identity, site.mode) == "closed":
+        return pages.shut_page(site.study, session["mode"], session["token"], session["language"], "closed")
+    return pages.page(connection, site.study, session, waiting)
 
 
 @router.post("/s/{token}/consent")
@@ -135,7 +142,7 @@ async def ratings(request: Request, site: AtSite, token: Token, sent: answers.Po
         if planned["answered_at"] is not None:
             waiting = sessions.unanswered(connection, session["id"], 1 + ahead)
         session = steps.after_answers(connection, site.study, session, waiting, now)
-        return {"saved": saved, "next": pages.page(connection, site.study, session, waiting)}
+        return {"saved": saved, "next": session_page(site, connection, session, waiting)}
 
     try:
         reply = await asyncio.wrap_future(site.database.submit(save))
