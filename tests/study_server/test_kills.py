@@ -17,6 +17,7 @@ from study_fixture import write_study
 from survey_client import Participant
 
 from study_server.database import default_url
+from study_server.serve import START_S
 
 
 @pytest.mark.parametrize("kills", [2, pytest.param(100, marks=[pytest.mark.long, pytest.mark.timeout(1200)])])
@@ -70,7 +71,8 @@ def test_workers_that_find_no_database_say_so_and_wait_until_it_is_back(
         postgres.kill()
         for worker in server.workers():
             os.kill(worker, signal.SIGKILL)
-        until(lambda: "fakesss: a worker waits: postgresql" in server.said())
+        # uvicorn waits START_S for the pong of a worker that is killed between its ping and its pong
+        until(lambda: "fakesss: a worker waits: postgresql" in server.said(), seconds=2 * START_S)
         postgres.start()
         person.rate()  # the connection waits in line until somebody is there to answer it
         assert person.to_end()
