@@ -25,7 +25,7 @@ FINISH_S = 20
 
 MOST_FILES = 65_536
 
-START_S = 60
+START_S = 20
 """How long a worker may take to start before it is given up and replaced."""
 
 

@@ -132,7 +132,8 @@ def test_planted_effects_come_out(built: BuiltStudy) -> None:
     )
     raters = [Rater(built, effects, 5, number) for number in range(400)]
     base, more, less = (
-        np.mean([rater.rating(built.by_id[name], "translucent") for rater in raters]) for name in ("img04", "img05", "img06")
+        np.mean([rater.rating(built.by_id[name], "translucent") for rater in raters])
+        for name in ("img04", "img05", "img06")
     )
     assert more - base == pytest.approx(1.0, abs=0.15)
     assert less - base == pytest.approx(-1.0, abs=0.15)
@@ -203,7 +204,9 @@ def test_an_effects_file_that_is_wrong(tmp_path: Path, built: BuiltStudy, text: 
 def test_what_a_seed_draws_is_kept(built: BuiltStudy) -> None:
     """Answers published with a seed must come out again, as drawn when effects had no pictures."""
     rater = Rater(built, default_effects(built), 2011, 3)
-    assert [[rater.rating(stimulus, question) for stimulus in built.stimuli] for question in ("translucent", "realistic")] == [
+    assert [
+        [rater.rating(stimulus, question) for stimulus in built.stimuli] for question in ("translucent", "realistic")
+    ] == [
         [5, 4, 5, 4, 4, 5, 3, 3, 4],
         [5, 4, 4, 6, 2, 2, 3, 4, 5],
     ]
