@@ -123,8 +123,8 @@ def test_no_room_for_the_download(tmp_path: Path, monkeypatch: pytest.MonkeyPatc
     fill(study, 50)
     secret = {"Authorization": f"Bearer {admin_secret(study)}"}
     with served(study) as url, small_disk(tmp_path / "disk") as disk:
-        monkeypatch.setattr(tempfile, "tempdir", str(disk.seen))
         whole = httpx.get(f"{url}/admin/export/ratings.csv", headers=secret)
+        monkeypatch.setattr(tempfile, "tempdir", str(disk.seen))  # not before: its own room may be freed late
         disk.fill()
         for name in ("ratings.csv", "psych-ds.zip"):
             refused = httpx.get(f"{url}/admin/export/{name}", headers={**secret, "Accept": "application/json"})
