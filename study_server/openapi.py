@@ -49,7 +49,7 @@ STATUS = {
     405: "not with this method",
     408: "slower than a minute",
     409: "not now",
-    410: "withdrawn, or the study has changed",
+    410: "withdrawn",
     413: "more than 64 KiB",
     422: "not of the form that is asked for",
     429: "asked too often; wait as long as Retry-After says",
@@ -88,7 +88,7 @@ STEP_FORM = form(
     age=TEXT, background=TEXT, vision=TEXT, comments=TEXT, px_per_mm=TEXT, card=TEXT, device_pixel_ratio=TEXT
 )
 POSTED = (400, 403, 408, 413, 422)
-SESSION = (404, 410, 429, 503)
+SESSION = (404, 429, 503)
 LOCKED = (401, 422, 429, 503)
 
 ADDRESSES: dict[tuple[str, str], tuple[Media, tuple[int, ...], Schema | None]] = {
@@ -110,7 +110,7 @@ ADDRESSES: dict[tuple[str, str], tuple[Media, tuple[int, ...], Schema | None]] =
     ("get", "/s/{token}"): (page(), SESSION, None),
     ("post", "/s/{token}/consent"): ({}, (303, *SESSION, *POSTED), form(**PERSON, language=TEXT, simulated=YES)),
     ("post", "/s/{token}/declined"): (page(), (*SESSION, *POSTED), form(**PERSON, language=TEXT)),
-    ("post", "/s/{token}/ratings"): (json_only("Acknowledged"), (409, *SESSION, *POSTED), None),
+    ("post", "/s/{token}/ratings"): (json_only("Acknowledged"), (409, 410, *SESSION, *POSTED), None),
     ("get", "/s/{token}/withdraw"): (page(), SESSION, None),
     ("post", "/s/{token}/withdraw"): ({}, (303, *SESSION, *POSTED), form(sure=YES)),
     ("get", "/s/{token}/{step}"): ({}, (303, *SESSION), None),

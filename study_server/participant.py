@@ -20,7 +20,7 @@ from study_server import answers, pages, sessions, steps
 from study_server.gates import gate
 from study_server.rate_limit import retry_after
 from study_server.sessions import Session
-from study_server.site import AtSite, Fields, Site, answer, site_of, sorry, told, visitor_language
+from study_server.site import AtSite, Fields, Site, answer, sorry, told, visitor_language
 from study_server.texts import N_
 from study_server.tokens import External, belongs_to, is_valid, make_token
 
@@ -29,7 +29,6 @@ router = APIRouter()
 STRANGER = N_("This address does not belong to a participant of this study; please open the link you were given again.")
 TOO_OFTEN = N_("Too much was asked at once; please wait a few seconds and try again. Nothing is lost.")
 CROWD = N_("Many people are starting at this moment; please wait a few seconds and try again.")
-CHANGED = N_("This study has changed since you began; please open the link again.")
 
 
 async def own_token(request: Request, site: AtSite, token: str) -> str:
@@ -62,8 +61,6 @@ def here(request: Request, site: AtSite, token: Token) -> Response:
     """Where this participant is."""
     with site.database.reading() as connection:
         session = find(request, connection, token)
-        if session is not None and session["study"] != site.study.identity:
-            return sorry(request, 410, CHANGED)
         data = current_page(request, site, connection, token, session)
     return answer(request, f"{data['step']}.html", data)
 
@@ -86,9 +83,15 @@ def session_page(
     site: Site, connection: Connection, session: Session, waiting: Sequence[RowMapping] = ()
 ) -> dict[str, Any]:
     """Where this session stands, `waiting` for its next presentations; a closed study ends it for who is under way."""
-    if session["step"] in sessions.UNDER_WAY and gate(connection, site.study.identity, site.mode) == "closed":
+    if is_shut_out(site, connection, session):
         return pages.shut_page(site.study, session["mode"], session["token"], session["language"], "closed")
     return pages.page(connection, site.study, session, waiting)
+
+
+def is_shut_out(site: Site, connection: Connection, session: Session) -> bool:
+    """Whether the study was closed on them; never who gave every rating: they may comment, and see their code."""
+    under_way = session["step"] in sessions.UNDER_WAY and session["finished_at"] is None
+    return under_way and gate(connection, site.study.identity, site.mode) == "closed"
 
 
 @router.post("/s/{token}/consent")
@@ -190,7 +193,7 @@ def leave_step(request: Request, site: AtSite, token: Token, step: str, fields: 
         session = find(request, connection, token, lock=True)
         if session is None or step not in steps.LEAVE:
             return sorry(request, 404, STRANGER)
-        if session["step"] == step and session["study"] == site.study.identity:
+        if session["step"] == step and not is_shut_out(site, connection, session):
             steps.LEAVE[step](connection, site.study, session, fields, now)
     return RedirectResponse(f"/s/{token}", 303)
 
@@ -208,8 +211,6 @@ def known(request: Request, connection: Connection, token: str, *, lock: bool = 
     session = find(request, connection, token, lock=lock)
     if session is None:
         raise answers.Refused(404, STRANGER)
-    if session["study"] != site_of(request).study.identity:
-        raise answers.Refused(410, CHANGED)
     return session
 
 

@@ -5,7 +5,7 @@ from pathlib import Path
 
 import httpx
 import pytest
-from survey_client import JSON, Participant
+from survey_client import ABOUT, JSON, Participant
 
 from study_server.app import admin_secret
 
@@ -59,6 +59,31 @@ def test_closing_on_people_asks_once_more(admin: httpx.Client, url: str) -> None
     assert person.state["trial"] == 2 and person.to_end()
     assert [row["state"] for row in admin.get("/admin").json()["gate"]["history"]] == ["open", "closed"]
     assert admin.post("/admin/gate", json={"state": "closed"}).status_code == 200  # nobody is under way
+
+
+def test_closed_no_form_leads_on_and_withdrawing_still_does(admin: httpx.Client, url: str) -> None:
+    person, other = Participant(url).consent(), Participant(url).consent()
+    person.post("about", **ABOUT)
+    admin.post("/admin/gate", json={"state": "closed", "sure": "yes"})
+    assert person.post("screen")["step"] == "closed"
+    assert other.post("withdraw", sure="yes")["step"] == "withdrawn"
+    admin.post("/admin/gate", json={"state": "open"})
+    assert person.client.get(person.here).json()["step"] == "screen"
+
+
+def test_closed_who_gave_the_last_rating_may_comment_and_sees_the_code(admin: httpx.Client, url: str) -> None:
+    person, late = Participant(url).to_trials(), Participant(url).to_trials()
+    for _ in range(2):
+        late.rate()
+    last = late.answers()
+    while person.state["step"] == "trials":
+        person.rate()
+    admin.post("/admin/gate", json={"state": "closed", "sure": "yes"})
+    late.state = late.send(last).json()["next"]  # given before
+    for finished in (person, late):
+        assert finished.client.get(finished.here).json()["step"] == "comments"
+        assert finished.post("comments", comments="Nice discs.")["step"] == "done"
+        assert len(finished.state["completion_code"]) == 8
 
 
 def test_by_form_from_the_page(study: Path, url: str) -> None:
