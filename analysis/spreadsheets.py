@@ -6,7 +6,7 @@ from typing import Any
 
 import pandas as pd
 
-FORMULA = r"(?=[=+\-@\t\r])"
+FORMULA = r"(?=[=+\-@\t\r\n])"
 NUMBER = re.compile(r"[+-]?(\d+\.?\d*|\.\d+)(e[+-]?\d+)?", re.IGNORECASE)
 
 

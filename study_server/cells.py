@@ -8,7 +8,7 @@ from typing import Any
 
 ROWS_AT_ONCE = 500
 
-FORMULA_STARTS = ("=", "+", "-", "@", "\t", "\r")
+FORMULA_STARTS = ("=", "+", "-", "@", "\t", "\r", "\n")
 """First characters that make a spreadsheet run a cell."""
 
 
@@ -27,9 +27,14 @@ def csv_text(columns: Sequence[str], rows: Iterable[Mapping[str, Any]]) -> Itera
 
 
 def cell(value: Any) -> Any:
-    """`value` as it stands in a cell. Text that a spreadsheet would run as a formula gets a leading apostrophe."""
-    if isinstance(value, str) and value.startswith(FORMULA_STARTS):
-        return f"'{value}"
+    """`value` as it stands in a cell. Text that a spreadsheet would run as a formula gets a leading apostrophe.
+
+    A line in it ends in a line feed: a bare carriage return, which Python before 3.13 does not quote, ends a row for
+    many a reader.
+    """
+    if isinstance(value, str):
+        text = value.replace("\r\n", "\n").replace("\r", "\n")
+        return f"'{text}" if text.startswith(FORMULA_STARTS) else text
     if isinstance(value, float):
         return f"{value:.10g}"
     return value

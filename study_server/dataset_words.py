@@ -105,7 +105,7 @@ The files are joined by `session` and `stimulus`; `participant` is one person, w
 
 An empty cell is a missing value; the codebook says for each column what it means. An empty `rating` was expected and
 not given. Sessions that were withdrawn or screened out have no rows in trials. A text that begins with = + - @, a tab
-or a carriage return has an apostrophe before it, so that no spreadsheet runs it.
+or a line feed has an apostrophe before it, so that no spreadsheet runs it.
 
 ## Privacy
 

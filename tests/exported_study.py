@@ -8,6 +8,8 @@ from study_fixture import write_study
 from survey_client import Participant
 
 COMMENT = '=HYPERLINK("http://x"), "quoted",\r\nsecond line; déjà vu 半透明'
+JOB = "@home\rEVIL,x,live,finished"
+"""A bare carriage return, which no form sends and any program can."""
 QUESTIONS = [
     {"name": "looks, \"soft\"", "text": "The object looks soft, or \"soft\".", "scale": 5},
     {"name": "translucent", "text": "The object looks translucent."},
@@ -34,7 +36,7 @@ def write_hostile_study(folder: Path, **survey: Any) -> Path:
 def people(url: str) -> None:
     """One who finishes, one who stops after two pictures, one before the first, one sent away, one who withdraws."""
     finished = Participant(url)
-    to_trials(finished, age="25-34", job="@home")
+    to_trials(finished, age="25-34", job=JOB)
     while finished.state["step"] == "trials":
         finished.rate(2)
     finished.post("comments", comments=COMMENT)

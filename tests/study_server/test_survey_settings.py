@@ -32,6 +32,7 @@ def test_the_survey_table_may_be_missing() -> None:
         ({"survey": {"order": "latin"}}, "study.toml: survey.order: 'latin': must be"),
         ({"survey": {"about": [{"name": "a", "text": "?", "choces": []}]}}, "survey.about[1].choces: unknown key; did"),
         ({"question": [{**QUESTION, "name": "-x"}]}, "study.toml: question[1].name: '-x': a spreadsheet would run"),
+        ({"question": [{**QUESTION, "name": "\nx"}]}, "a spreadsheet would run a name that begins with '\\n'"),
         ({"survey": {"about": [{"name": "=age", "text": "?"}]}}, "begins with '=' as a formula; begin with a letter"),
         ({"survey": {"release_after_minutes": float("nan")}}, "survey.release_after_minutes"),
     ],
