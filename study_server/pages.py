@@ -1,7 +1,9 @@
 """What a participant's page holds at each step: one dict, shown as HTML or sent as JSON. Its texts are translated."""
 
+import hashlib
 import re
 from collections.abc import Collection, Sequence
+from pathlib import Path
 from typing import Any
 from urllib.parse import quote, urlencode
 
@@ -15,6 +17,11 @@ from study_server.pictures import picture_facts
 from study_server.sessions import Session, unanswered
 from study_server.settings import CHECK_NAME, Question, Survey
 from study_server.tokens import External
+
+HERE = Path(__file__).parent
+OURS = sorted([*HERE.glob("static/*.js"), *HERE.glob("templates/*.html")])
+RELEASE = hashlib.sha256(b"".join(path.read_bytes() for path in OURS)).hexdigest()[:16]
+"""Tells the pages and scripts of this release from another's: a page older than its server loads itself anew."""
 
 PROLIFIC = "https://app.prolific.com/submissions/complete?cc={code}"
 
@@ -151,6 +158,7 @@ def trial_page(study: BuiltStudy, waiting: Sequence[RowMapping], say: Words) -> 
         "ahead": [trial_facts(study, row, say) for row in later if row["practice"] == due["practice"]],
         "unsaved_ahead": study.settings.survey.unsaved_ahead,
         "scaled_pictures": study.settings.survey.scaled_pictures,
+        "release": RELEASE,
     }
 
 

@@ -36,7 +36,7 @@ export class Delivery {
     for (let failures = 0; !this.#isOver; ) {
       const answer = this.sendable;
       if (!answer && this.page && !this.isStale) return;
-      const reply = await (answer ? this.#alone(() => this.#post(answer)) : askWhere(this.here));
+      const reply = await (answer ? this.#alone(() => this.#post(answer, failures)) : askWhere(this.here, failures));
       this.isFailing = "after" in reply;
       if (!this.isFailing) this.#take(answer, reply);
       this.heard();
@@ -46,8 +46,8 @@ export class Delivery {
   }
 
   // Another tab may have sent it while this one waited for its turn.
-  #post(answer) {
-    return this.outbox.has(answer) ? send(this.here, answer) : { page: null };
+  #post(answer, failures) {
+    return this.outbox.has(answer) ? send(this.here, answer, failures) : { page: null };
   }
 
   #take(answer, { page = null, refused }) {

@@ -14,9 +14,9 @@ for (const answer of outbox.answers()) {
 
 // Whether the server has it; a refusal is the other answer there is.
 async function isAnswered(answer) {
-  for (let failures = 1; ; failures++) {
-    const reply = await send(here, answer);
+  for (let failures = 0; ; failures++) {
+    const reply = await send(here, answer, failures);
     if (!("after" in reply)) return "page" in reply;
-    await pause(failures, reply.after);
+    await pause(failures + 1, reply.after);
   }
 }

@@ -84,7 +84,7 @@ export class Questions {
 
   // Keys 1-9 and 0 for ten answer the question that has the focus, else the first open one; the focus moves on.
   #digit(event) {
-    if (!this.isOpen || event.ctrlKey || event.metaKey || event.altKey || !/^[0-9]$/.test(event.key)) return;
+    if (!this.isOpen || event.repeat || event.ctrlKey || event.metaKey || event.altKey || !/^[0-9]$/.test(event.key)) return;
     const focused = this.#fieldsets.findIndex((fieldset) => fieldset.contains(document.activeElement));
     const index = focused >= 0 ? focused : this.firstOpen;
     const radio = this.#fieldsets[index]?.querySelector(`input[value="${Number(event.key) || 10}"]`);

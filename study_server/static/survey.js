@@ -54,8 +54,10 @@ function proceed() {
 // Go where the server says, as far as there is nothing to do here. A step that is not of this page is a page of its own.
 function goOn(page) {
   if (page.step !== step) return delivery.isRunning ? undefined : leave();
-  if (isAnswerable) fetchAhead(page);
+  const isReplaced = page.release !== words.release; // the server, under this page: it may speak otherwise now
+  if (isAnswerable && !isReplaced) fetchAhead(page);
   if (trial) return;
+  if (isReplaced) return delivery.isRunning ? undefined : leave();
   trial = following(page);
   if (trial) show(trial);
   else setTimeout(tell, LONG_MS);
