@@ -4,7 +4,7 @@ import json
 import time
 from dataclasses import asdict
 
-from sqlalchemy import Connection, func, insert, select, update
+from sqlalchemy import Connection, and_, func, insert, select, update
 
 from fakesss.problem import BadInput
 from study_server import schema
@@ -20,19 +20,23 @@ def adopt_study(database: Database, study: BuiltStudy, shown: str) -> None:
     to two different studies must not be mixed. Pilot sessions of an earlier version stay, apart, and are not resumed.
     """
     with database.writing() as connection:
-        others = connection.scalar(
-            select(func.count())
-            .select_from(schema.sessions)
-            .where(schema.sessions.c.mode == "live", schema.sessions.c.study != study.identity)
-        )
+        others = live_elsewhere(connection, study.identity)
         if others:
+            aside = "move that file aside" if database.is_sqlite else "name another database with --database"
             raise BadInput(
                 f"{shown}: holds {others} live session(s) of another version of this study; "
-                "move that file aside, or restore study.toml and its pictures as they were"
+                f"{aside}, or restore study.toml and its pictures as they were"
             )
         this = schema.studies.c.identity == study.identity
         if not connection.execute(update(schema.studies).where(this).values(opened_at=time.time())).rowcount:
             insert_study(connection, study)
+
+
+def live_elsewhere(connection: Connection, study: str) -> int:
+    """How many live sessions of other versions than `study` (an identity) the database holds."""
+    versions = select(schema.studies.c.identity).where(schema.studies.c.identity != study)
+    theirs = and_(schema.sessions.c.study.in_(versions), schema.sessions.c.mode == "live")  # finds them by the index
+    return connection.scalar(select(func.count()).select_from(schema.sessions).where(theirs)) or 0
 
 
 def insert_study(connection: Connection, study: BuiltStudy) -> None:

@@ -108,7 +108,7 @@ ADDRESSES: dict[tuple[str, str], tuple[Media, tuple[int, ...], Schema | None]] =
     ),
     ("get", "/"): ({}, (303,), None),
     ("get", "/s/{token}"): (page(), SESSION, None),
-    ("post", "/s/{token}/consent"): ({}, (303, *SESSION, *POSTED), form(**PERSON, language=TEXT, simulated=YES)),
+    ("post", "/s/{token}/consent"): ({}, (303, 409, *SESSION, *POSTED), form(**PERSON, language=TEXT, simulated=YES)),
     ("post", "/s/{token}/declined"): (page(), (*SESSION, *POSTED), form(**PERSON, language=TEXT)),
     ("post", "/s/{token}/ratings"): (json_only("Acknowledged"), (409, 410, *SESSION, *POSTED), None),
     ("get", "/s/{token}/withdraw"): (page(), SESSION, None),

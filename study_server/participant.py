@@ -5,6 +5,7 @@ browser show the same step. A form that arrives for a step already left changes 
 """
 
 import asyncio
+import logging
 import time
 from collections.abc import Collection, Sequence
 from typing import Annotated, Any
@@ -24,11 +25,14 @@ from study_server.site import AtSite, Fields, Site, answer, sorry, told, visitor
 from study_server.texts import N_
 from study_server.tokens import External, belongs_to, is_valid, make_token
 
+log = logging.getLogger(__name__)
+
 router = APIRouter()
 
 STRANGER = N_("This address does not belong to a participant of this study; please open the link you were given again.")
 TOO_OFTEN = N_("Too much was asked at once; please wait a few seconds and try again. Nothing is lost.")
 CROWD = N_("Many people are starting at this moment; please wait a few seconds and try again.")
+ANOTHER_VERSION = N_("Another version of this study is under way; please tell the people who gave you the link.")
 
 
 async def own_token(request: Request, site: AtSite, token: str) -> str:
@@ -112,7 +116,11 @@ def consent(request: Request, site: AtSite, token: Token, fields: Fields) -> Res
             wait = site.limits.start(simulated=visitor.mode == "simulated")
             if wait:
                 raise HTTPException(429, CROWD, retry_after(wait))
-            sessions.start(connection, site.study, visitor, time.time())
+            try:
+                sessions.start(connection, site.study, visitor, time.time())
+            except sessions.AnotherVersion:
+                log.error("nobody can start: another version of this study has live sessions in the same database")
+                raise HTTPException(409, ANOTHER_VERSION) from None
     return RedirectResponse(f"/s/{token}", 303)
 
 

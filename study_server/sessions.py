@@ -10,7 +10,7 @@ from sqlalchemy import Connection, RowMapping, and_, bindparam, case, func, inse
 from sqlalchemy.sql.elements import ColumnElement
 
 from study_server import schema
-from study_server.adoption import design_of
+from study_server.adoption import design_of, live_elsewhere
 from study_server.manifest import BuiltStudy
 from study_server.tokens import External
 
@@ -73,17 +73,23 @@ class Visitor:
     client: Mapping[str, str] = field(default_factory=dict)
 
 
+class AnotherVersion(Exception):
+    """Another version of the study, served on the same database, has taken live sessions."""
+
+
 def start(connection: Connection, study: BuiltStudy, visitor: Visitor, now: float) -> RowMapping:
     """The session of this visitor, made if it is not there: an order row reserved and every trial written down.
 
-    Must run in a writing transaction: choosing the row and taking it is one step. The study's row is locked for it,
-    since PostgreSQL, unlike SQLite, has many writers at once.
+    Must run in a writing transaction: choosing the row and taking it is one step. The studies' rows are locked for it,
+    since PostgreSQL, unlike SQLite, has many writers at once; all of them, since two versions may be served at once.
+    Raises `AnotherVersion` if this one would be the second with live sessions.
     """
-    this = schema.studies.c.identity == study.identity
-    connection.execute(select(schema.studies.c.identity).where(this).with_for_update())
+    connection.execute(select(schema.studies.c.identity).order_by(schema.studies.c.identity).with_for_update())
     known = find(connection, visitor.token)
     if known is not None:
         return known
+    if visitor.mode == "live" and live_elsewhere(connection, study.identity):
+        raise AnotherVersion
     row, trials = emptiest_row(connection, study, visitor.mode, now)
     new = {
         "id": secrets.token_hex(8),
