@@ -106,7 +106,7 @@ ADDRESSES: dict[tuple[str, str], tuple[Media, tuple[int, ...], Schema | None]] =
         page("Gate"), (303, 409, *LOCKED, *POSTED),
         form("state", state={"type": "string", "enum": ["open", "paused", "closed"]}, sure=YES),
     ),
-    ("get", "/"): ({}, (303,), None),
+    ("get", "/"): ({}, (303, 404), None),
     ("get", "/s/{token}"): (page(), SESSION, None),
     ("post", "/s/{token}/consent"): ({}, (303, 409, *SESSION, *POSTED), form(**PERSON, language=TEXT, simulated=YES)),
     ("post", "/s/{token}/declined"): (page(), (*SESSION, *POSTED), form(**PERSON, language=TEXT)),

@@ -46,6 +46,7 @@ def consent_page(study: BuiltStudy, mode: str, token: str, language: str, extern
         "retention": say(survey.retention),
         "retention_until": survey.retention_until.isoformat() if survey.retention_until else "",
         "languages": [language_link(other, external) for other in offered(survey)],
+        "query": language_link(language, external)["href"],
         "phones": survey.phones,
         "external": {} if external is None else external.as_query(),
     }

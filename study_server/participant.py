@@ -7,7 +7,7 @@ browser show the same step. A form that arrives for a step already left changes 
 import asyncio
 import logging
 import time
-from collections.abc import Collection, Sequence
+from collections.abc import Collection, Mapping, Sequence
 from typing import Annotated, Any
 
 from fastapi import APIRouter, Depends, Request, Response
@@ -30,6 +30,8 @@ log = logging.getLogger(__name__)
 router = APIRouter()
 
 STRANGER = N_("This address does not belong to a participant of this study; please open the link you were given again.")
+HALF = N_("This address is only a part of your link; please open the link you were given again.")
+UNFILLED = N_("This link does not say who you are ({name}); please tell the people who gave it to you.")
 TOO_OFTEN = N_("Too much was asked at once; please wait a few seconds and try again. Nothing is lost.")
 CROWD = N_("Many people are starting at this moment; please wait a few seconds and try again.")
 ANOTHER_VERSION = N_("Another version of this study is under way; please tell the people who gave you the link.")
@@ -54,9 +56,16 @@ Token = Annotated[str, Depends(own_token)]
 @router.get("/")
 def link(request: Request, site: AtSite) -> Response:
     """The link that is sent out: gives the visitor an address of their own. Stores nothing."""
-    external = External.from_query(request.query_params)
-    token = make_token(site.signing_key, external)
-    query = f"?{request.url.query}" if request.url.query else ""  # ?language=de
+    missing = External.missing(request.query_params)
+    if missing:
+        return sorry(request, 404, UNFILLED, name=missing)
+    return to_page(request, make_token(site.signing_key, External.from_query(request.query_params)))
+
+
+def to_page(request: Request, token: str) -> Response:
+    """To the page where this participant is. The link's query stays: before a session is there only it has the names
+    that the visitor came with, and the language chosen by hand."""
+    query = f"?{request.url.query}" if request.url.query else ""
     return RedirectResponse(f"/s/{token}{query}", 303)
 
 
@@ -79,7 +88,7 @@ def current_page(
     standing = gate(connection, site.study.identity, site.mode)
     if standing != "open":
         return pages.shut_page(site.study, site.mode, token, language, standing)
-    external = External.from_query(request.query_params)
+    external = named(site, token, request.query_params)
     return pages.consent_page(site.study, site.mode, token, language, external)
 
 
@@ -98,37 +107,54 @@ def is_shut_out(site: Site, connection: Connection, session: Session) -> bool:
     return under_way and gate(connection, site.study.identity, site.mode) == "closed"
 
 
+def named(site: Site, token: str, *queries: Mapping[str, str]) -> External | None:
+    """The names that `token` was made of, from the first of `queries` that has any; None if of none.
+
+    Raises `HTTPException` 404 if they are missing or another person's: nobody who came with names becomes nameless.
+    """
+    external = next(filter(None, map(External.from_query, queries)), None)
+    if not belongs_to(site.signing_key, token, external):
+        raise HTTPException(404, STRANGER if external else HALF)
+    return external
+
+
 @router.post("/s/{token}/consent")
 def consent(request: Request, site: AtSite, token: Token, fields: Fields) -> Response:
     """Starts the session, once, however often it is sent. A program says `simulated=yes` and is kept apart."""
-    external = External.from_query(fields)
-    if external and not belongs_to(site.signing_key, token, external):
-        return sorry(request, 404, STRANGER)
-    visitor = sessions.Visitor(
-        token=token,
-        mode="simulated" if fields.get("simulated") == "yes" else site.mode,
-        external=external,
-        language=visitor_language(request, fields.get("language", "")),
-        client=client_facts(request, site.study.settings.survey.record),
-    )
+    is_simulated = fields.get("simulated") == "yes"
     with site.database.writing() as connection:
-        if gate(connection, site.study.identity, site.mode) == "open" and not sessions.find(connection, token):
-            wait = site.limits.start(simulated=visitor.mode == "simulated")
-            if wait:
-                raise HTTPException(429, CROWD, retry_after(wait))
-            try:
-                sessions.start(connection, site.study, visitor, time.time())
-            except sessions.AnotherVersion:
-                log.error("nobody can start: another version of this study has live sessions in the same database")
-                raise HTTPException(409, ANOTHER_VERSION) from None
+        begun = sessions.find(connection, token) is not None
+        if not begun and gate(connection, site.study.identity, site.mode) != "open":
+            return to_page(request, token)
+        if not begun:
+            visitor = sessions.Visitor(
+                token=token,
+                mode="simulated" if is_simulated else site.mode,
+                external=named(site, token, request.query_params, fields),
+                language=visitor_language(request, fields.get("language", "")),
+                client=client_facts(request, site.study.settings.survey.record),
+            )
+            start(site, connection, visitor)
     return RedirectResponse(f"/s/{token}", 303)
+
+
+def start(site: Site, connection: Connection, visitor: sessions.Visitor) -> None:
+    """Starts the session of `visitor`, or raises `HTTPException`: 429 for a crowd, 409 for two studies in one place."""
+    wait = site.limits.start(simulated=visitor.mode == "simulated")
+    if wait:
+        raise HTTPException(429, CROWD, retry_after(wait))
+    try:
+        sessions.start(connection, site.study, visitor, time.time())
+    except sessions.AnotherVersion:
+        log.error("nobody can start: another version of this study has live sessions in the same database")
+        raise HTTPException(409, ANOTHER_VERSION) from None
 
 
 @router.post("/s/{token}/declined")
 def declined(request: Request, site: AtSite, token: Token, fields: Fields) -> Response:
     """Somebody does not agree to take part: thanked, and led back to where they came from. Stores nothing."""
     language = visitor_language(request, fields.get("language", ""))
-    data = pages.declined_page(site.study, site.mode, token, language, External.from_query(fields))
+    data = pages.declined_page(site.study, site.mode, token, language, named(site, token, request.query_params, fields))
     return answer(request, "declined.html", data)
 
 
@@ -176,9 +202,9 @@ def ask_withdraw(request: Request, site: AtSite, token: Token) -> Response:
 
 
 @router.get("/s/{token}/{step}")
-def back(token: Token) -> Response:
+def back(request: Request, token: Token) -> Response:
     """Somebody opens the address of a form, as after an error: to the page where they are."""
-    return RedirectResponse(f"/s/{token}", 303)
+    return to_page(request, token)
 
 
 @router.post("/s/{token}/withdraw")

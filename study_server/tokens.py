@@ -1,7 +1,8 @@
 """The participant's secret address: 128 random bits and 128 bits of proof that this server made them.
 
 A token is valid before anything is stored under it, so that opening the link (or a mail program's preview of it)
-starts nothing; and the same external person always gets the same one, so that first hits may race.
+starts nothing; and the same external person always gets the same one, so that first hits may race. The proof also says
+whether the token is of somebody without a name elsewhere: an external person cannot take part without theirs.
 """
 
 import base64
@@ -13,6 +14,7 @@ from dataclasses import dataclass
 from typing import Self
 
 BYTES = 16
+ANONYMOUS = b"anonymous\0"
 LONGEST = 200
 """Characters of an external name that are kept."""
 
@@ -33,6 +35,14 @@ class External:
             return None
         return cls(study, participant, query.get("SESSION_ID", "")[:LONGEST])
 
+    @staticmethod
+    def missing(query: Mapping[str, str]) -> str:
+        """Which of the two names that belong together a link lacks, or has as the service's unfilled blank."""
+        if not ("STUDY_ID" in query or "PROLIFIC_PID" in query):
+            return ""
+        wanted = ("STUDY_ID", "PROLIFIC_PID")
+        return next((name for name in wanted if not query.get(name) or "{{" in query[name]), "")
+
     def as_query(self) -> dict[str, str]:
         """The parameters it came from, for a form's hidden fields."""
         return {"STUDY_ID": self.study, "PROLIFIC_PID": self.participant, "SESSION_ID": self.session}
@@ -42,8 +52,8 @@ def make_token(key: str, external: External | None) -> str:
     """A new token, or the one of this external person."""
     if external is None:
         nonce = secrets.token_bytes(BYTES)
-    else:
-        nonce = proof(key, f"person\0{external.study}\0{external.participant}".encode())
+        return written(nonce + proof(key, ANONYMOUS + nonce))
+    nonce = proof(key, f"person\0{external.study}\0{external.participant}".encode())
     return written(nonce + proof(key, nonce))
 
 
@@ -58,14 +68,20 @@ def is_valid(key: str, token: str) -> bool:
         raw = base64.urlsafe_b64decode(token + "=")
     except ValueError:
         return False
-    if written(raw) != token:
+    if written(raw) != token or len(raw) != 2 * BYTES:
         return False
-    return len(raw) == 2 * BYTES and hmac.compare_digest(proof(key, raw[:BYTES]), raw[BYTES:])
+    return hmac.compare_digest(proof(key, raw[:BYTES]), raw[BYTES:]) or is_anonymous(key, token)
 
 
-def belongs_to(key: str, token: str, external: External) -> bool:
-    """Whether `token` is the one of this external person."""
-    return hmac.compare_digest(token, make_token(key, external))
+def is_anonymous(key: str, token: str) -> bool:
+    """Whether a valid `token` is nobody's in particular. Those that release 1 gave are like external persons'."""
+    raw = base64.urlsafe_b64decode(token + "=")
+    return hmac.compare_digest(proof(key, ANONYMOUS + raw[:BYTES]), raw[BYTES:])
+
+
+def belongs_to(key: str, token: str, external: External | None) -> bool:
+    """Whether a valid `token` is the one of this external person, or of nobody in particular."""
+    return is_anonymous(key, token) if external is None else hmac.compare_digest(token, make_token(key, external))
 
 
 def proof(key: str, message: bytes) -> bytes:

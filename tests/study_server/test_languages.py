@@ -169,7 +169,8 @@ def test_the_switch_keeps_who_came_from_prolific(in_four: str) -> None:
     again = person.client.get(person.here + spanish["href"])
     assert again.json()["external"] == {"STUDY_ID": "s", "PROLIFIC_PID": "p&q", "SESSION_ID": "x"}
     assert (again.json()["language"], again.json()["here"]) == ("es", person.here)
-    page = person.client.get(person.here + "?language=es", headers=HTML).text
+    visitor = Participant(in_four)
+    page = visitor.client.get(visitor.here + "?language=es", headers=HTML).text
     assert '<a href="?language=fr" hreflang="fr" lang="fr">Français</a>' in page
     assert 'hreflang="es" lang="es" aria-current="true">Español</a>' in page
 

@@ -1,0 +1,109 @@
+"""Who comes from Prolific keeps their name on every way to the start, and is led back with the code agreed upon."""
+
+from pathlib import Path
+from urllib.parse import urljoin
+
+import httpx
+import pytest
+from survey_client import JSON, Participant
+
+from study_server import tokens
+from study_server.database import default_url, open_database
+from study_server.gates import Gate, set_gate
+from study_server.manifest import load_study
+from study_server.serve import served
+from study_server.tokens import External, belongs_to, is_valid, make_token
+
+LINK = "?PROLIFIC_PID=p1&STUDY_ID=s1&SESSION_ID=x1"
+BROWSER = {"Accept": "text/html", "Sec-Fetch-Site": "same-origin"}
+
+
+def who(study: Path) -> list[tuple[str, str, str]]:
+    """(study, participant, session) that each stored session came with."""
+    asked = "SELECT external_study, external_participant, external_session FROM sessions"
+    with open_database(default_url(study)).reading() as connection:
+        return [tuple(row) for row in connection.exec_driver_sql(asked)]
+
+
+def turn(study: Path, state: Gate) -> None:
+    with open_database(default_url(study)).writing() as connection:
+        set_gate(connection, load_study(study).identity, "live", state, 0.0)
+
+
+def form_action(page: httpx.Response, step: str) -> str:
+    """Where the form of the page that leads to `step` is sent, as a browser reads it."""
+    action = page.text.split(f"/{step}")[1].split('"')[0].replace("&amp;", "&")
+    return urljoin(str(page.url), f"{page.url.path.removesuffix('/declined')}/{step}{action}")
+
+
+def test_a_pause_before_the_click_makes_nobody_nameless(study: Path, url: str) -> None:
+    with httpx.Client(base_url=url, headers=BROWSER, follow_redirects=True) as browser:
+        page = browser.get(f"/{LINK}")
+        turn(study, "paused")
+        paused = browser.post(form_action(page, "consent"))
+        assert "A short break" in paused.text
+        turn(study, "open")
+        again = browser.get(paused.url)
+        assert "About you" in browser.post(form_action(again, "consent")).text
+    assert who(study) == [("s1", "p1", "x1")]
+
+
+def test_a_change_of_mind_makes_nobody_nameless(study: Path, url: str) -> None:
+    with httpx.Client(base_url=url, headers=BROWSER, follow_redirects=True) as browser:
+        declined = browser.post(form_action(browser.get(f"/{LINK}&language=en"), "declined"))
+        assert "You do not take part" in declined.text
+        again = browser.get(declined.url)  # the address bar, reloaded by hand
+        browser.post(form_action(again, "consent"))
+    assert who(study) == [("s1", "p1", "x1")]
+
+
+def test_an_address_without_its_names_starts_nothing(study: Path, url: str) -> None:
+    person = Participant(url, LINK)
+    for response in (
+        person.client.get(person.here),
+        person.client.post(f"{person.here}/consent", json={}),
+        person.client.post(f"{person.here}/declined", json={}),
+    ):
+        assert response.status_code == 404
+        assert response.json()["error"].startswith("This address is only a part of your link")
+    assert who(study) == []
+    assert person.consent().client.get(person.here).json()["step"] == "about"  # once begun, the address is enough
+
+
+@pytest.mark.parametrize(
+    ("query", "name"),
+    [
+        ("?PROLIFIC_PID=p1", "STUDY_ID"),
+        ("?STUDY_ID=s1&PROLIFIC_PID=", "PROLIFIC_PID"),
+        ("?PROLIFIC_PID={{%PROLIFIC_PID%}}&STUDY_ID={{%STUDY_ID%}}", "STUDY_ID"),
+        ("?STUDY_ID=s1&PROLIFIC_PID=%7B%7B%25PROLIFIC_PID%25%7D%7D", "PROLIFIC_PID"),
+    ],
+)
+def test_a_link_that_was_not_filled_in_is_told_so(url: str, query: str, name: str) -> None:
+    response = httpx.get(f"{url}/{query}", headers=JSON)
+    assert response.status_code == 404
+    assert response.json()["error"] == (
+        f"This link does not say who you are ({name}); please tell the people who gave it to you."
+    )
+
+
+def test_tokens_say_whether_they_are_somebodys(monkeypatch: pytest.MonkeyPatch) -> None:
+    person, other = External("s1", "p1"), External("s1", "p2")
+    mine, anybodys = make_token("key", person), make_token("key", None)
+    assert is_valid("key", mine) and is_valid("key", anybodys)
+    assert not is_valid("other", mine) and not is_valid("other", anybodys)
+    assert belongs_to("key", mine, person) and not belongs_to("key", mine, other) and not belongs_to("key", mine, None)
+    assert belongs_to("key", anybodys, None) and not belongs_to("key", anybodys, person)
+    monkeypatch.setattr(tokens, "ANONYMOUS", b"")  # as release 1 made them
+    assert make_token("key", person) == mine
+
+
+def test_an_address_that_release_1_gave_somebody_without_a_name_goes_on(
+    study: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    with monkeypatch.context() as release_1:
+        release_1.setattr(tokens, "ANONYMOUS", b"")
+        with served(study) as url:
+            person = Participant(url).consent()
+    with served(study) as url:
+        assert httpx.get(f"{url}{person.here}", headers=JSON).json()["step"] == "about"
