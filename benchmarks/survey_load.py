@@ -36,6 +36,7 @@ from survey_disk import Transaction, is_save, slow_disk
 from survey_study import write_study
 
 from study_server.app import create_app
+from study_server.engines import sqlite_url
 from study_server.export import export_ratings
 from study_server.serve import running
 
@@ -88,7 +89,7 @@ def crowd(url: str, **order: Any) -> Iterator[dict[str, Any]]:
 
 def recorded(study: Path, folder: Path) -> tuple[Path, list[Transaction]]:
     """A fresh database, and all that one person's way through the survey writes to it, transaction by transaction."""
-    app = create_app(study, database_url=f"sqlite:///{folder / 'recorded.sqlite'}")
+    app = create_app(study, database_url=sqlite_url(folder / "recorded.sqlite"))
     database = app.state.site.database
     fresh = folder / "fresh.sqlite"
     with database.reading() as connection:
@@ -246,9 +247,11 @@ def main(folder: Path | None, people: int, rounds: int, seconds: float, think: f
         many, usual = write_study(folder / "many", MANY), write_study(folder / "usual", USUAL)
         saves = recorded(many, folder)
         report: dict[str, Any] = {"machine": machine(folder), "statements": [sql for sql, _ in last_save(saves[1])]}
-        rows = [Row("SQLite", f"sqlite:///{folder}/0.sqlite")]
+        rows = [Row("SQLite", sqlite_url(folder / "0.sqlite"))]
         rows += [
-            Row(f"SQLite, disk +{ms} ms", f"sqlite:///{folder}/{ms}.sqlite", float(ms)) for ms in slow.split(",") if ms
+            Row(f"SQLite, disk +{ms} ms", sqlite_url(folder / f"{ms}.sqlite"), float(ms))
+            for ms in slow.split(",")
+            if ms
         ]
         postgres_rows = rows_on_postgres(stack) if postgres else []
         report["throughput"] = [
@@ -258,7 +261,7 @@ def main(folder: Path | None, people: int, rounds: int, seconds: float, think: f
         most = report["throughput"][0]["saves_per_s"] * think * math.exp(SIGMA**2 / 2)
         sizes = [round(most * share / 10) for share in range(1, 11)]
         report["people"] = people_at_once(
-            Row("SQLite", f"sqlite:///{folder}/usual.sqlite"), usual, folder, sizes, think, 3 * seconds
+            Row("SQLite", sqlite_url(folder / "usual.sqlite")), usual, folder, sizes, think, 3 * seconds
         )
         print_table(report["people"], PEOPLE)
         click.echo(f"\n{limit_words(report['people'])}")

@@ -49,9 +49,12 @@ def report(study: Path | None, out: Path | None, database: str | None, pdf: bool
     print_pdf = pdf_printer(out) if pdf else None
     options = {"plan": plan_in(given["plan"]), "command": spoken(study, given)}
     if study is not None and given["ratings"] is None:
-        from study_server.export import mode_to_analyse
+        from study_server.export import left_out, mode_to_analyse
 
-        results = report_study(study, out, database, mode_to_analyse(study, database), **options)
+        mode = mode_to_analyse(study, database)
+        results = report_study(study, out, database, mode, **options)
+        for sentence in left_out(study, mode, database):
+            say(sentence)
     else:
         reading = {
             "columns": all_halves(given["columns"], "column"),

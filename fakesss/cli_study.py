@@ -170,13 +170,13 @@ def simulate(
     from study_server.serve import served
     from study_server.simulate import simulate as walk
 
+    built = load_study(study)
     raters = partial(walk, started=started, completed=completed, seed=seed, effects=effects)
-    secret = admin_secret(study, database)
     if url is None:
         with served(study, database_url=database, mode="simulated") as own:
-            result = raters(own, load_study(study), secret)
+            result = raters(own, built, admin_secret(study, database))
     else:
-        result = raters(url, load_study(study), secret)
+        result = raters(url, built, admin_secret(study, database))
     text = "\n".join(f"{name:13} {value}" for name, value in result.items())
     done(result, as_json, text)
     sys.exit(1 if result["lost"] or result["duplicated"] else 0)
@@ -194,9 +194,11 @@ def export(study: Path, out: Path | None, form: str, database: str | None, mode:
 
     Example: fakesss export my-study --format psych-ds -o dataset
     """
-    from study_server.export import export_ratings
+    from study_server.export import export_ratings, left_out
     from study_server.psych_ds import export_psych_ds
 
     write, usual = (export_ratings, "export") if form == "csv" else (export_psych_ds, "psych-ds")
     files = [str(path) for path in write(study, out or study / usual, mode=mode, database_url=database)]
+    for sentence in left_out(study, mode, database):
+        say(sentence)
     done({"files": files}, as_json, "\n".join(files))

@@ -7,6 +7,7 @@ from sqlalchemy import text
 
 from study_server.app import SECRET_VARIABLE
 from study_server.database import Database
+from study_server.engines import shown_url
 from study_server.site import Site
 
 
@@ -22,7 +23,7 @@ def announcement(site: Site, url: str, proxies: Sequence[str], workers: int, *, 
         f"  participants  {url}/",
         f"  admin         {url}/admin   secret: {secret}",
         f"  report        {url}/admin/report/",
-        f"  database      {site.database.engine.url.render_as_string(hide_password=True)}",
+        f"  database      {shown_url(site.database.engine.url)}",
         f"  processes     {workers}",
         f"  proxies       {believed(proxies)}",
     ]

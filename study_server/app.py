@@ -17,7 +17,8 @@ from fakesss.problem import BadInput
 from study_server import admin, participant, pictures, plates
 from study_server.admin_door import SHORTEST_SECRET
 from study_server.adoption import adopt_study
-from study_server.database import Database, default_url, is_writable, open_database, reason, secret, shown_url
+from study_server.database import chosen_url, is_writable, open_database, open_existing, reason, secret
+from study_server.engines import shown_url
 from study_server.gates import gate
 from study_server.manifest import load_study, study_changed
 from study_server.openapi import described
@@ -70,7 +71,7 @@ def open_site(folder: Path, url: str | None, mode: Mode, make_report: Callable[[
             f"{folder / 'study.toml'}: has changed since the pictures were built; run `fakesss build {folder}`, "
             "or restore it"
         )
-    url = url or default_url(folder)
+    url = chosen_url(folder, url)
     database = open_database(url)
     with blaming(url):
         adopt_study(database, study, shown_url(url))
@@ -80,7 +81,7 @@ def open_site(folder: Path, url: str | None, mode: Mode, make_report: Callable[[
             mode=mode,
             signing_key=f"{secret(database, 'signing_key')} {mode} {study.identity}",
             salt=secret(database, "salt"),
-            admin_secret=chosen_secret(database),
+            admin_secret=given_secret() or secret(database, "admin_secret"),
             reporter=Reporter(make_report) if make_report else None,
         )
 
@@ -97,18 +98,24 @@ def blaming(url: str) -> Iterator[None]:
 
 
 def admin_secret(study_folder: Path, database_url: str | None = None) -> str:
-    """The secret that opens /admin of this study: from FAKESSS_ADMIN_SECRET, or kept in its database."""
-    url = database_url or default_url(Path(study_folder))
-    with blaming(url):
-        return chosen_secret(open_database(url))
+    """The secret that opens /admin of this study: from FAKESSS_ADMIN_SECRET, or kept in its database.
+
+    `BadInput` if that is not there.
+    """
+    given = given_secret()
+    if given:
+        return given
+    database = open_existing(Path(study_folder), database_url)
+    with blaming(chosen_url(Path(study_folder), database_url)):
+        return secret(database, "admin_secret")
 
 
-def chosen_secret(database: Database) -> str:
-    """The environment's secret or else the database's; `BadInput` if the environment's is too short."""
+def given_secret() -> str:
+    """The environment's secret, "" if there is none; `BadInput` if it is too short."""
     given = os.environ.get(SECRET_VARIABLE, "")
     if 0 < len(given) < SHORTEST_SECRET:
         raise BadInput(f"{SECRET_VARIABLE}: has {len(given)} characters; give at least {SHORTEST_SECRET}, or none")
-    return given or secret(database, "admin_secret")
+    return given
 
 
 def health(site: AtSite) -> Response:

@@ -18,11 +18,10 @@ from pathlib import Path
 from typing import Any, BinaryIO
 
 from sqlalchemy import URL
-from sqlalchemy.engine import make_url
 
 from fakesss.problem import BadInput
-from study_server.database import default_url
-from study_server.engines import BUSY_TIMEOUT_S
+from study_server.database import chosen_url
+from study_server.engines import BUSY_TIMEOUT_S, parsed_url, sqlite_file
 from study_server.staging import staged
 
 
@@ -81,10 +80,10 @@ def backup(study_folder: Path, out: Path | None = None, database_url: str | None
     Returns `file` and `bytes`. Raises `BadInput` if there is no database, it is PostgreSQL's, or `out` exists or cannot
     be written.
     """
-    url = make_url(database_url or default_url(study_folder))
+    url = parsed_url(chosen_url(study_folder, database_url))
     if url.get_backend_name() != "sqlite":
         raise BadInput(no_backup(url))
-    source = Path(str(url.database))
+    source = sqlite_file(url)
     if not source.is_file():
         raise BadInput(f"{source}: no such file; nobody has been served this study yet")
     out = out or study_folder / file_name(time.time())

@@ -8,18 +8,18 @@ import time
 import weakref
 from collections.abc import Callable, Iterator, Mapping
 from concurrent.futures import Future
-from contextlib import contextmanager
+from contextlib import ExitStack, contextmanager
 from pathlib import Path
 from typing import Any, TypeVar
 
 from sqlalchemy import Connection, Engine, Table, func, select, update
 from sqlalchemy.dialects import postgresql, sqlite
-from sqlalchemy.engine import make_url
-from sqlalchemy.exc import ArgumentError, DatabaseError, NoSuchModuleError, TimeoutError
+from sqlalchemy.exc import DatabaseError, TimeoutError
 
 from fakesss.problem import BadInput
 from study_server import schema
-from study_server.engines import AT_ONCE, connect
+from study_server.engines import AT_ONCE, connect, parsed_url, shown_url, sqlite_file, sqlite_url
+from study_server.foreign_tables import check_columns, holds_ours
 from study_server.group_commit import GroupCommit
 from study_server.retries import Retries
 from study_server.upgrades import upgrade
@@ -79,30 +79,57 @@ def finish(writer: GroupCommit | Retries, engine: Engine) -> None:
 
 def default_url(folder: Path) -> str:
     """Where the ratings of the study in `folder` are kept unless told otherwise."""
-    return f"sqlite:///{folder / 'ratings.sqlite'}"
+    return sqlite_url(folder / "ratings.sqlite")
 
 
-def open_database(url: str) -> Database:
+def chosen_url(folder: Path, given: str | None) -> str:
+    """The address `given`, or else the study's own; `BadInput` for an empty one, perhaps of a variable not set."""
+    if given is None:
+        return default_url(folder)
+    if not given.strip():
+        raise BadInput('--database "": names no database; give its address, or leave --database out')
+    return given
+
+
+def open_existing(folder: Path, given: str | None) -> Database:
+    """The database `given`, or else the one of the study in `folder`; `BadInput` rather than a new empty one."""
+    url = chosen_url(folder, given)
+    parts = parsed_url(url)
+    if parts.get_backend_name() == "sqlite" and not (file := sqlite_file(parts)).is_file():
+        raise BadInput(f"{file}: no such file; nobody has been served this study yet")
+    return open_database(url, new=False)
+
+
+def open_database(url: str, *, new: bool = True) -> Database:
     """The database at `url` with all tables in place; one that an earlier release wrote is upgraded.
 
-    Raises `BadInput` if it cannot be opened or written, or belongs to a later version of this program.
+    `new`: one without tables gets them. Raises `BadInput` if it cannot be opened or written, holds another program's
+    tables, or belongs to a later version of this program.
     """
     shown = shown_url(url)
-    try:
-        database = Database(url)
-        with database.writing() as connection:
-            take_turns(connection)
-            schema.tables.create_all(connection)
-            version = upgrade(connection, remembered(connection, "schema_version", lambda: schema.VERSION))
-    except DatabaseError as error:
-        raise BadInput(f"{shown}: cannot be opened for writing ({reason(error)}); check it and its rights") from None
-    except (ArgumentError, NoSuchModuleError, ImportError) as error:
-        raise BadInput(
-            f"{shown}: is no database address ({error}); write sqlite:///FILE or postgresql://USER@HOST/NAME"
-        ) from None
+    database = Database(url)
+    with ExitStack() as unless_opened:
+        unless_opened.callback(database.close)
+        try:
+            with database.writing() as connection:
+                take_turns(connection)
+                prepare(connection, shown, new=new)
+        except DatabaseError as error:
+            said = f"cannot be opened for writing ({reason(error)}); check it and its rights"
+            raise BadInput(f"{shown}: {said}") from None
+        unless_opened.pop_all()
+    return database
+
+
+def prepare(connection: Connection, shown: str, *, new: bool) -> None:
+    """Our tables, made if there are none and `new` allows it, brought to this version; else `BadInput`."""
+    if not holds_ours(connection, shown) and not new:
+        raise BadInput(f"{shown}: holds no answers; nobody has been served this study from it yet")
+    schema.tables.create_all(connection)
+    version = upgrade(connection, remembered(connection, "schema_version", lambda: schema.VERSION))
     if version != schema.VERSION:
         raise BadInput(f"{shown}: has schema {version}, this program knows {schema.VERSION}; use the one it is from")
-    return database
+    check_columns(connection, shown)
 
 
 def take_turns(connection: Connection) -> None:
@@ -120,14 +147,6 @@ def reason(error: DatabaseError) -> str:
     diagnosis = getattr(error.orig, "diag", None)
     said = getattr(diagnosis, "message_primary", None) or str(error.orig)
     return " ".join(said.split())
-
-
-def shown_url(url: str) -> str:
-    """`url` fit to be printed: without its password."""
-    try:
-        return make_url(url).render_as_string(hide_password=True)
-    except ArgumentError:
-        return f'"{url}"'
 
 
 def remembered(connection: Connection, key: str, make: Callable[[], object]) -> str:

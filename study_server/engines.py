@@ -1,5 +1,7 @@
 """Engines for the two databases we know, set so that a commit means: on disk, and nobody waits for ever."""
 
+import re
+from pathlib import Path
 from typing import Any
 
 from sqlalchemy import URL, Connection, Engine, create_engine, event
@@ -20,8 +22,16 @@ IDLE_TIMEOUT_S = 900
 AT_ONCE = 10
 """Transactions at once in one process on PostgreSQL, of writers and as many of readers."""
 
-DRIVERS = {"postgres": "postgresql+psycopg", "postgresql": "postgresql+psycopg"}
+DRIVERS = {
+    "postgres": "postgresql+psycopg",
+    "postgresql": "postgresql+psycopg",
+    "postgresql+psycopg": "postgresql+psycopg",
+    "sqlite": "sqlite",
+    "sqlite+pysqlite": "sqlite",
+}
 """What people write, and the driver we use for it."""
+
+FORMS = "write sqlite:///FILE or postgresql://USER@HOST/NAME"
 
 POSTGRESQL = {
     "connect_timeout": 10,
@@ -39,19 +49,51 @@ def connect(address: str) -> Engine:
 
     Parameters are kept out of errors and logs: they hold participants' tokens and answers.
     """
-    url = make_url(address)
-    url = url.set(drivername=DRIVERS.get(url.drivername, url.drivername))
-    if url.get_backend_name() == "postgresql":
-        return postgresql(url)
-    if url.get_backend_name() == "sqlite":
-        return sqlite(url)
-    raise ArgumentError(f"{url.get_backend_name()} is neither SQLite nor PostgreSQL")
+    url = parsed_url(address)
+    if url.drivername not in DRIVERS:
+        raise BadInput(f"{shown_url(address)}: {url.drivername} is neither SQLite nor PostgreSQL by psycopg; {FORMS}")
+    url = url.set(drivername=DRIVERS[url.drivername])
+    return sqlite(url) if url.drivername == "sqlite" else postgresql(url)
+
+
+def parsed_url(address: str) -> URL:
+    """The parts of a database's address; `BadInput` if it is none."""
+    try:
+        return make_url(address)
+    except (ArgumentError, ValueError):
+        raise BadInput(f'"{without_password(address)}": is no database address; {FORMS}') from None
+
+
+def without_password(address: str) -> str:
+    """What cannot be read as an address, without what may be a password in it."""
+    return re.sub(r"://.*@", "://...@", address)
+
+
+def sqlite_url(file: Path) -> str:
+    """The address of an SQLite file. `?` begins an address's parameters and `%` spells a character by its number."""
+    return "sqlite:///" + str(file).replace("%", "%25").replace("?", "%3F")
+
+
+def shown_url(address: str | URL) -> str:
+    """`address` fit to be printed: without its password."""
+    url = parsed_url(address) if isinstance(address, str) else address
+    if url.drivername == "sqlite" and url.database and not url.query:
+        return sqlite_url(Path(url.database))
+    return url.set(query={}).render_as_string(hide_password=True)
+
+
+def sqlite_file(url: URL) -> Path:
+    """The file of an SQLite address; `BadInput` if it names none, for in memory every answer would be lost."""
+    if url.database in (None, "", ":memory:"):
+        raise BadInput(f"{url}: names no file, so that every answer would be lost at the end; write sqlite:///FILE")
+    if url.query:  # among them mode=memory
+        raise BadInput(f"{url}: the address of an SQLite file takes no parameters; write a ? in its name as %3F")
+    return Path(str(url.database))
 
 
 def sqlite(url: URL) -> Engine:
-    """An engine on the file of `url`; `BadInput` if it names none, for in memory every answer would be lost."""
-    if url.database in (None, "", ":memory:"):
-        raise BadInput(f"{url}: names no file, so that every answer would be lost at the end; write sqlite:///FILE")
+    """An engine on the file of `url`."""
+    sqlite_file(url)
     engine = create_engine(
         url, connect_args={"timeout": BUSY_TIMEOUT_S}, pool_size=20, max_overflow=40, hide_parameters=True
     )
@@ -77,7 +119,7 @@ def begin_sqlite(connection: Connection) -> None:
 
 
 def postgresql(url: URL) -> Engine:
-    """An engine on a PostgreSQL server, by psycopg 3."""
+    """An engine on a PostgreSQL server, by psycopg 3; `BadInput` where that is not installed."""
     arguments = {name: value for name, value in POSTGRESQL.items() if name not in url.query}
     try:
         engine = create_engine(

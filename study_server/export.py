@@ -4,14 +4,14 @@ from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from pathlib import Path
 
-from sqlalchemy import and_, select
+from sqlalchemy import and_, func, select
 
 from fakesss.problem import BadInput
 from study_server import export_rows, schema
 from study_server.cells import csv_text
 from study_server.codebook import TABLES, codebook_rows, columns_of
-from study_server.counts import current_study
-from study_server.database import default_url, open_database, secret, shown_url
+from study_server.database import open_existing, secret
+from study_server.engines import shown_url
 from study_server.export_rows import Row, Source
 from study_server.manifest import load_study
 from study_server.sessions import presentations, sessions
@@ -57,14 +57,33 @@ def write_table(path: Path, pieces: Iterator[str]) -> None:
 def snapshot(study_folder: Path, mode: Mode, database_url: str | None) -> Iterator[Source]:
     """The study's ratings of one mode as they are now, for exports outside the server."""
     study = load_study(study_folder)
-    url = database_url or default_url(study_folder)
-    database = open_database(url)
+    database = open_existing(study_folder, database_url)
     salt = secret(database, "salt")
     with database.reading() as connection:
-        current = current_study(connection)
-        if current is not None and current["identity"] != study.identity:
-            raise BadInput(f"{shown_url(url)}: is of another version of this study; export it with the study as it was")
+        versions = connection.scalars(select(schema.studies.c.identity)).all()
+        if versions and study.identity not in versions:
+            shown = shown_url(database.engine.url)
+            raise BadInput(f"{shown}: is of another version of this study; export it with the study as it was")
         yield Source(connection, study, mode, salt)
+
+
+def left_out(study_folder: Path, mode: Mode, database_url: str | None = None) -> list[str]:
+    """What else the database holds than this mode's sessions of the folder's study, a sentence each."""
+    study = load_study(Path(study_folder))
+    database = open_existing(study_folder, database_url)
+    version = (sessions.study == study.identity).label("version")
+    query = select(version, sessions.mode, func.count()).group_by(version, sessions.mode).order_by(sessions.mode)
+    with database.reading() as connection:
+        found = connection.execute(query).all()
+    holds = f"{shown_url(database.engine.url)}: also holds"
+    told = [
+        f"{holds} {n} {other} session(s), left out here; `fakesss export --mode {other}` writes them"
+        for is_ours, other, n in found
+        if is_ours and other != mode
+    ]
+    others = sum(n for is_ours, _, n in found if not is_ours)
+    again = "left out here; with the study's folder as it was then they can be exported"
+    return told + ([f"{holds} {others} session(s) of another version of this study, {again}"] if others else [])
 
 
 def mode_to_analyse(study_folder: Path, database_url: str | None = None) -> Mode:
@@ -74,7 +93,7 @@ def mode_to_analyse(study_folder: Path, database_url: str | None = None) -> Mode
     """
     rated = schema.ratings.join(schema.presentations).join(schema.sessions)
     mine = and_(sessions.study == load_study(study_folder).identity, presentations.practice.is_(False))
-    with open_database(database_url or default_url(study_folder)).reading() as connection:
+    with open_existing(study_folder, database_url).reading() as connection:
         found = connection.scalars(select(sessions.mode).select_from(rated).where(mine).distinct()).all()
     order: tuple[Mode, ...] = ("live", "simulated", "pilot")
     return next((mode for mode in order if mode in found), "live")

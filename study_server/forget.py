@@ -12,11 +12,10 @@ from pathlib import Path
 from typing import Any
 
 from sqlalchemy import Connection, delete, func, insert, select, text, update
-from sqlalchemy.engine import make_url
 
 from fakesss.problem import BadInput
 from study_server import gates, schema
-from study_server.database import Database, default_url, open_database
+from study_server.database import Database, open_existing
 from study_server.engines import BUSY_TIMEOUT_S
 from study_server.happenings import FORGOTTEN
 
@@ -31,7 +30,7 @@ MODES = ("live", "pilot", "simulated")
 
 def sessions_held(study_folder: Path, database_url: str | None = None) -> int:
     """How many sessions of every mode and version the study's database holds; `BadInput` if there is none."""
-    with opened(study_folder, database_url).reading() as connection:
+    with open_existing(study_folder, database_url).reading() as connection:
         return connection.scalar(select(func.count()).select_from(schema.sessions)) or 0
 
 
@@ -41,7 +40,7 @@ def forget(study_folder: Path, database_url: str | None = None) -> dict[str, Any
     Of every mode and version of the study in the database. Returns `sessions`, `ratings_kept` and `forgotten_at`.
     Raises `BadInput` if there is no database, or another program holds it so that old bytes cannot go.
     """
-    database = opened(study_folder, database_url)
+    database = open_existing(study_folder, database_url)
     now = time.time()
     with database.writing() as connection:
         sessions = forget_sessions(connection)
@@ -53,15 +52,6 @@ def forget(study_folder: Path, database_url: str | None = None) -> dict[str, Any
         ratings = connection.scalar(select(func.count()).select_from(schema.ratings)) or 0
     scrub(database)
     return {"sessions": sessions, "ratings_kept": ratings, "forgotten_at": now}
-
-
-def opened(study_folder: Path, database_url: str | None) -> Database:
-    """The study's database; `BadInput` rather than a new empty one."""
-    url = database_url or default_url(study_folder)
-    parts = make_url(url)
-    if parts.get_backend_name() == "sqlite" and not Path(str(parts.database)).is_file():
-        raise BadInput(f"{parts.database}: no such file; nobody has been served this study yet")
-    return open_database(url)
 
 
 def forget_sessions(connection: Connection) -> int:

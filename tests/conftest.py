@@ -10,6 +10,8 @@ import pytest
 from hypothesis import settings
 from postgres_server import PostgresServer, postgres_server
 
+from study_server.engines import sqlite_url
+
 assert "numpy" not in sys.modules, "numpy reads the number of threads when it is imported, and was imported before"
 os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
 
@@ -36,5 +38,5 @@ def postgres_url(postgres: PostgresServer) -> Iterator[str]:
 def database_url(request: pytest.FixtureRequest, tmp_path: Path) -> str:
     """The address of a new empty database: the test runs once with each kind."""
     if request.param == "sqlite":
-        return f"sqlite:///{tmp_path / 'ratings.sqlite'}"
+        return sqlite_url(tmp_path / "ratings.sqlite")
     return str(request.getfixturevalue("postgres_url"))

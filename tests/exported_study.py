@@ -7,6 +7,8 @@ from typing import Any
 from study_fixture import write_study
 from survey_client import Participant
 
+from study_server.database import default_url, open_database
+
 COMMENT = '=HYPERLINK("http://x"), "quoted",\r\nsecond line; déjà vu 半透明'
 JOB = "@home\rEVIL,x,live,finished"
 """A bare carriage return, which no form sends and any program can."""
@@ -30,6 +32,12 @@ def write_hostile_study(folder: Path, **survey: Any) -> Path:
         again = {"id": f"{shown['id']}r", "role": "repeat", "rows": [], "same_picture_as": shown["id"]}
         manifest["stimuli"].append({**shown, **again, "label": "=1+1"})
     path.write_text(json.dumps(manifest), encoding="utf-8")
+    return study
+
+
+def nobody_came(study: Path, database_url: str | None = None) -> Path:
+    """The study, as if it had been served and nobody had come: its database is there."""
+    open_database(database_url or default_url(study)).close()
     return study
 
 

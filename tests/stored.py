@@ -12,6 +12,7 @@ from sqlalchemy import Connection, func, select
 
 from study_server import schema
 from study_server.database import open_database
+from study_server.engines import sqlite_url
 
 Answers = Mapping[tuple[int, str], list[int]]
 """One session's: (place, question) -> the first answer and its revisions, oldest first; practice included."""
@@ -48,7 +49,7 @@ def sound_copy(folder: Path) -> Stored:
         for path in folder.glob("ratings.sqlite*"):
             if not path.name.endswith("-shm"):  # is made anew from the log
                 shutil.copy(path, copy)
-        return sound(f"sqlite:///{copy}/ratings.sqlite")
+        return sound(sqlite_url(Path(copy) / "ratings.sqlite"))
 
 
 def judged(connection: Connection) -> Stored:

@@ -10,10 +10,13 @@ import pytest
 from server_process import NotStarted, ServerProcess, server_process
 from study_fixture import write_study
 
+from study_server.engines import sqlite_url
+
 
 def test_killed_and_started_again_at_the_same_address(tmp_path: Path) -> None:
     study = write_study(tmp_path / "study")
-    with server_process(study, tmp_path / "log", mode="pilot", database_url=f"sqlite:///{tmp_path}/x.sqlite") as server:
+    options = {"mode": "pilot", "database_url": sqlite_url(tmp_path / "x.sqlite")}
+    with server_process(study, tmp_path / "log", **options) as server:
         server.kill()
         with pytest.raises(httpx.ConnectError):
             httpx.get(server.url)

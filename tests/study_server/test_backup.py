@@ -25,6 +25,7 @@ from fakesss.cli import commands
 from fakesss.problem import BadInput
 from study_server import backup as backups
 from study_server.app import admin_secret
+from study_server.engines import sqlite_url
 from study_server.serve import served
 
 Acknowledged = dict[tuple[str, int, str], int]
@@ -77,9 +78,7 @@ def test_a_backup_under_load_restores_whole(study: Path, tmp_path: Path, copies:
                 at_the_end = len(acknowledged)
                 assert response.status_code == 200
                 (restored / "ratings.sqlite").write_bytes(response.content)
-                held = sound(
-                    f"sqlite:///{restored / 'ratings.sqlite'}"
-                )  # whole trials only, no row without its session
+                held = sound(sqlite_url(restored / "ratings.sqlite"))  # whole trials only, no row without its session
                 kept = {(name, *key): given[0] for name in held.sessions for key, given in held.answers[name].items()}
                 assert {key: kept.get(key) for key in before} == before
                 assert at_the_end >= len(before)
@@ -130,7 +129,7 @@ def test_the_command_copies_and_replaces_nothing(url: str, study: Path, tmp_path
     assert result.exit_code == 0, result.output
     assert json.loads(result.stdout) == {"file": str(out), "bytes": out.stat().st_size}
     assert out.stat().st_mode & 0o077 == 0, "it holds secrets"
-    assert len(sound(f"sqlite:///{out}").sessions) == 1
+    assert len(sound(sqlite_url(out)).sessions) == 1
     before = out.read_bytes()
     with pytest.raises(BadInput, match="is there already"):
         backups.backup(study, out)

@@ -17,6 +17,7 @@ from sqlalchemy.exc import DatabaseError, IntegrityError, OperationalError
 
 from study_server import group_commit, schema
 from study_server.database import Database, open_database, reason, remembered
+from study_server.engines import sqlite_url
 from study_server.group_commit import GROUP_WORKS
 
 Work = Callable[[Connection], object]
@@ -56,7 +57,7 @@ def database(database_url: str) -> Iterator[Database]:
 
 @pytest.fixture
 def lite(tmp_path: Path) -> Iterator[Database]:
-    database = open_database(f"sqlite:///{tmp_path / 'lite.sqlite'}")
+    database = open_database(sqlite_url(tmp_path / "lite.sqlite"))
     yield database
     database.close()
 

@@ -20,6 +20,7 @@ from survey_client import Participant
 from fakesss.problem import BadInput
 from study_server.app import admin_secret
 from study_server.codebook import TABLES
+from study_server.engines import parsed_url
 from study_server.export import export_ratings
 from study_server.serve import served
 
@@ -103,7 +104,7 @@ def test_a_slow_reader_holds_no_snapshot_and_nobody_up(tmp_path: Path, database_
 def snapshots_held(database_url: str) -> int:
     """Readers in whose way of clearing up the database still is."""
     if database_url.startswith("sqlite"):
-        with sqlite3.connect(database_url.removeprefix("sqlite:///"), timeout=5) as connection:
+        with sqlite3.connect(str(parsed_url(database_url).database), timeout=5) as connection:
             busy, *_ = connection.execute("PRAGMA wal_checkpoint(TRUNCATE)").fetchone()
         connection.close()
         return int(busy)

@@ -9,7 +9,7 @@ from pathlib import Path
 
 import pandas as pd
 import pytest
-from exported_study import people, write_hostile_study
+from exported_study import nobody_came, people, write_hostile_study
 from pydantic import BaseModel
 from study_fixture import write_study
 from survey_client import Participant
@@ -96,8 +96,8 @@ def test_no_cell_is_without_a_column(hostile: Path, table: str) -> None:
 
 @pytest.mark.parametrize("table", TABLES)
 def test_headers_follow_from_the_study_alone(hostile: Path, tmp_path: Path, table: str) -> None:
-    write_hostile_study(tmp_path / "study")
-    export_ratings(tmp_path / "study", tmp_path / "nobody")
+    study = nobody_came(write_hostile_study(tmp_path / "study"))
+    export_ratings(study, tmp_path / "nobody")
     with (hostile / f"{table}.csv").open() as some, (tmp_path / "nobody" / f"{table}.csv").open() as none:
         assert some.readline() == none.readline()
 
@@ -145,7 +145,7 @@ def test_wide_has_each_answer_of_the_long_table_in_a_column_of_its_own(hostile: 
 
 
 def test_the_stimuli_bring_their_levels(study: Path, tmp_path: Path) -> None:
-    export_ratings(study, tmp_path / "out")
+    export_ratings(nobody_came(study), tmp_path / "out")
     frame = pd.read_csv(tmp_path / "out" / "stimuli.csv")
     assert frame["factor_thickness exponent"].tolist() == [25, 18, 30]
     assert pd.read_csv(tmp_path / "out" / "ratings.csv").empty
@@ -188,7 +188,7 @@ def test_iso_is_utc_with_milliseconds() -> None:
 def test_a_folder_that_cannot_be_written(study: Path, tmp_path: Path) -> None:
     (tmp_path / "file").write_text("")
     with pytest.raises(BadInput, match="cannot be written"):
-        export_ratings(study, tmp_path / "file" / "out")
+        export_ratings(nobody_came(study), tmp_path / "file" / "out")
 
 
 def test_another_version_of_the_study_is_not_exported_as_this_one(url: str, study: Path, tmp_path: Path) -> None:

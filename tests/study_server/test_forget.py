@@ -21,6 +21,7 @@ from fakesss.problem import BadInput
 from study_server import schema
 from study_server.app import admin_secret
 from study_server.database import default_url, open_database, secret
+from study_server.engines import parsed_url
 from study_server.forget import forget, scrub_file
 from study_server.serve import served
 
@@ -53,7 +54,7 @@ def everything(database_url: str) -> str:
     """All rows of all tables as text, read without our code."""
     names = [table.name for table in schema.tables.sorted_tables]
     if database_url.startswith("sqlite"):
-        with closing(sqlite3.connect(database_url.removeprefix("sqlite:///"))) as file:
+        with closing(sqlite3.connect(str(parsed_url(database_url).database))) as file:
             return repr([file.execute(f"SELECT * FROM {name}").fetchall() for name in names])
     with psycopg.connect(database_url.replace("+psycopg", "")) as connection:
         return repr([connection.execute(f"SELECT * FROM {name}".encode()).fetchall() for name in names])

@@ -15,6 +15,7 @@ from survey_client import Participant
 
 from study_server import engines
 from study_server.database import default_url
+from study_server.engines import sqlite_url
 from study_server.serve import served
 
 HOLD = """
@@ -76,7 +77,7 @@ def test_fifty_writers_and_another_program(tmp_path: Path) -> None:
         assert all(person.to_end() for person in people)
     stored = sound(default_url(study))
     assert sum(map(len, stored.answers.values())) == 50 * 7 * 2
-    sound(f"sqlite:///{tmp_path / 'copy.sqlite'}")
+    sound(sqlite_url(tmp_path / "copy.sqlite"))
 
 
 def test_a_program_that_never_lets_go_is_told_to_the_participant_and_no_more(

@@ -15,7 +15,7 @@ from types import SimpleNamespace
 
 import httpx
 import pytest
-from exported_study import COMMENT, JOB, people, write_hostile_study
+from exported_study import COMMENT, JOB, nobody_came, people, write_hostile_study
 from hypothesis import given
 from hypothesis import strategies as st
 from psych_ds_rules import DATA_FILE, broken_rules, data_files
@@ -23,6 +23,7 @@ from study_fixture import write_study
 
 from study_server.app import admin_secret
 from study_server.database import open_database
+from study_server.engines import sqlite_url
 from study_server.manifest import load_study
 from study_server.psych_ds import DATA, export_psych_ds, name_of
 from study_server.schema import sessions
@@ -66,7 +67,7 @@ def test_it_breaks_no_rule(dataset: Path) -> None:
 
 
 def test_it_breaks_no_rule_on_either_database_whether_anybody_came_or_not(tmp_path: Path, database_url: str) -> None:
-    study = write_hostile_study(tmp_path / "study")
+    study = nobody_came(write_hostile_study(tmp_path / "study"), database_url)
     export_psych_ds(study, tmp_path / "nobody", database_url=database_url)
     with served(study, database_url=database_url) as url:
         people(url)
@@ -174,7 +175,7 @@ def test_no_codes_no_addresses_of_participants_no_secrets(dataset: Path) -> None
     everything = b"".join(path.read_bytes() for path in dataset.rglob("*") if path.is_file())
     assert b"SECRET" not in everything
     assert not (dataset / "materials" / "study.toml").exists()
-    with open_database(f"sqlite:///{dataset.parent / 'study' / 'ratings.sqlite'}").reading() as connection:
+    with open_database(sqlite_url(dataset.parent / "study" / "ratings.sqlite")).reading() as connection:
         found = connection.execute(sessions.select()).mappings().all()
     secrets = [row[name] for row in found for name in ("token", "completion_code") if row[name]]
     assert len(secrets) >= 5
@@ -189,7 +190,7 @@ def test_the_materials_are_the_study(dataset: Path, tmp_path: Path) -> None:
     path = plain / "stimuli" / "manifest.json"
     sha256 = hashlib.sha256(b"title = 'x'").hexdigest()
     path.write_text(re.sub('"sha256": "[0-9a-f]+"', f'"sha256": "{sha256}"', path.read_text(), count=1))
-    export_psych_ds(plain, tmp_path / "out")
+    export_psych_ds(nobody_came(plain), tmp_path / "out")
     assert (tmp_path / "out" / "materials" / "study.toml").read_text() == "title = 'x'"
     (plain / "study.toml").write_text("title = 'y'")
     export_psych_ds(plain, tmp_path / "later")

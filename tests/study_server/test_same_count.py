@@ -20,6 +20,7 @@ from survey_client import ABOUT, JSON, Participant
 
 from study_server.app import admin_secret
 from study_server.counts import STATES
+from study_server.engines import parsed_url
 from study_server.serve import served
 
 ABOUT_FIELDS = [
@@ -33,9 +34,7 @@ DAY_S = 86_400.0
 def tables(database_url: str) -> Iterator[Any]:
     """The database as any other program sees it, without our code; `execute` takes SQL."""
     if database_url.startswith("sqlite"):
-        with closing(
-            sqlite3.connect(database_url.removeprefix("sqlite:///"), timeout=30, isolation_level=None)
-        ) as file:
+        with closing(sqlite3.connect(str(parsed_url(database_url).database), timeout=30, isolation_level=None)) as file:
             yield file
     else:
         with psycopg.connect(database_url.replace("+psycopg", ""), autocommit=True) as connection:

@@ -22,6 +22,7 @@ from study_fixture import write_study
 from survey_client import Participant
 
 from study_server.database import default_url
+from study_server.engines import parsed_url
 from study_server.serve import served
 
 RELEASE_1 = Path(__file__).parents[1] / "data" / "study_of_release_1"
@@ -143,7 +144,7 @@ def test_what_was_accepted_when_the_server_is_told_to_stop_is_finished(
 def locked(database: str) -> "sqlite3.Connection | psycopg.Connection[Any]":
     """Another program's transaction that keeps everybody from writing to the sessions."""
     if database.startswith("sqlite"):
-        other = sqlite3.connect(database.removeprefix("sqlite:///"), isolation_level=None)
+        other = sqlite3.connect(str(parsed_url(database).database), isolation_level=None)
         other.execute("BEGIN IMMEDIATE")
         return other
     connection = psycopg.connect(database.replace("+psycopg", ""))

@@ -16,6 +16,7 @@ from fakesss.problem import BadInput
 from study_server import schema
 from study_server.app import create_app
 from study_server.database import Database, open_database
+from study_server.engines import sqlite_url
 from study_server.serve import served
 
 Rows = Callable[..., list[dict[str, str]]]
@@ -66,12 +67,12 @@ def test_the_tables_are_those_of_a_new_database(old: Path, tmp_path: Path) -> No
                 for name in schema.tables.tables
             }
 
-    upgraded = open_database(f"sqlite:///{old / 'ratings.sqlite'}")
-    assert columns(upgraded) == columns(open_database(f"sqlite:///{tmp_path / 'new.sqlite'}"))
+    upgraded = open_database(sqlite_url(old / "ratings.sqlite"))
+    assert columns(upgraded) == columns(open_database(sqlite_url(tmp_path / "new.sqlite")))
 
 
 def test_a_later_releases_database_is_refused(old: Path) -> None:
-    database = open_database(f"sqlite:///{old / 'ratings.sqlite'}")
+    database = open_database(sqlite_url(old / "ratings.sqlite"))
     with database.writing() as connection:
         this = schema.meta.c.key == "schema_version"
         connection.execute(schema.meta.update().where(this).values(value="99"))
