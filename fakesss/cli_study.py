@@ -146,8 +146,8 @@ def serve_study(study: Path, host: str, port: int, database: str | None, pilot: 
 @STUDY
 @click.option("--url", help="A survey that runs already, in any mode; without it one is started and stopped again.")
 @click.option("--started", default=44, show_default=True, type=click.IntRange(1), help="Raters who begin.")
-@click.option("--completed", default=38, show_default=True, type=click.IntRange(0), help="Raters who finish.")
-@click.option("--seed", default=2011, show_default=True, help="Everything drawn by lot follows from it.")
+@click.option("--completed", type=click.IntRange(0), help="Raters who finish (default: 38 of 44, in proportion).")
+@click.option("--seed", default=2011, show_default=True, type=click.IntRange(0), help="All that is random follows.")
 @click.option("--database", metavar="URL", help="Where ratings go (default: STUDY/ratings.sqlite).")
 @click.option("--effects", type=click.Path(path_type=Path), help="TOML file of the raters' effects (docs/survey.md).")
 @AS_JSON
@@ -155,7 +155,7 @@ def simulate(
     study: Path,
     url: str | None,
     started: int,
-    completed: int,
+    completed: int | None,
     seed: int,
     database: str | None,
     effects: Path | None,

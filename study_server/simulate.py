@@ -17,6 +17,9 @@ from study_server.pages import trials
 from study_server.raters import Effects, Rater, default_effects, load_effects
 from study_server.walk import Walked, patiently, walk
 
+STARTED, COMPLETED = 44, 38
+"""How many begin and how many of them finish, unless told: a class of students."""
+
 AT_ONCE = 8
 """Raters under way at the same time."""
 
@@ -28,14 +31,15 @@ def simulate(
     study: BuiltStudy,
     admin_secret: str,
     *,
-    started: int = 44,
-    completed: int = 38,
+    started: int = STARTED,
+    completed: int | None = None,
     seed: int = 1,
     effects: Effects | Path | None = None,
     progress: bool = True,
 ) -> dict[str, Any]:
     """`started` raters take part at `url`, `completed` of them to the end; outlives restarts of the server.
 
+    `completed` left out is as large a share of `started` as 38 of 44.
     They are of mode simulated whatever mode the server serves. Simulated raters of earlier runs are counted first and
     the new ones numbered after them, so that the same seed brings new people rather than the same ones again.
     Returns the shape of `fakesss simulate --json`: raters started and completed; ratings acknowledged by the server;
@@ -44,6 +48,8 @@ def simulate(
     Raises `BadInput` for counts that make no sense, effects that are not of the study, an address that is none, a
     server out of reach, or one that serves another study.
     """
+    if completed is None:
+        completed = completing(started)
     if not 0 <= completed <= started:
         raise BadInput(f"--completed {completed}: must be between 0 and --started {started}")
     if isinstance(effects, Path):
@@ -67,6 +73,11 @@ def simulate(
         "p99_ms": round(float(np.percentile(waits, 99)), 2),
         "base_url": url,
     }
+
+
+def completing(started: int) -> int:
+    """How many of `started` raters stay to the end where nobody says how many."""
+    return round(started * COMPLETED / STARTED)
 
 
 def quitting(started: int, completed: int, pictures: int, seed: int) -> list[int | None]:

@@ -64,8 +64,8 @@ def patiently(client: httpx.Client, method: str, path: str, **how: Any) -> httpx
 def walk(url: str, rater: Rater, quits_after: int | None, saved: Callable[[], object]) -> Walked:
     """Take part until the end, or leave after `quits_after` rated pictures; `saved` is called after each picture.
 
-    Raises `BadInput` if the server cannot be reached, refuses, lets nobody in, or sends a picture that is not the one
-    announced.
+    Raises `BadInput` if the server cannot be reached, refuses, lets nobody in or on, or sends a picture that is not the
+    one announced.
     """
     walked = Walked()
     with httpx.Client(
@@ -83,13 +83,24 @@ def walk(url: str, rater: Rater, quits_after: int | None, saved: Callable[[], ob
                 state = rate(client, rater, state, walked)
                 saved()
             else:
-                form = fill_in(rater, state)
-                state = patiently(client, "POST", f"{state['here']}/{state['step']}", json=form).json()
+                state = leave(client, rater, state)
             if rater.is_clumsy:
                 state = patiently(client, "GET", state["here"]).json()  # a reload shows the same page
             walked.session = state.get("session", "")
         walked.completion_code = state["completion_code"]
     return walked
+
+
+def leave(client: httpx.Client, rater: Rater, state: dict[str, Any]) -> dict[str, Any]:
+    """Send this page's form; gives the next state. `BadInput` if that is the same page: it would be so for ever."""
+    step = state["step"]
+    following: dict[str, Any] = patiently(client, "POST", f"{state['here']}/{step}", json=fill_in(rater, state)).json()
+    if following["step"] == step:
+        raise BadInput(
+            f'{client.base_url}: the page "{step}" takes no answer and stays; look at it in a browser, and mend its '
+            "questions in study.toml (a choice that can be taken and does not screen out)"
+        )
+    return following
 
 
 def fill_in(rater: Rater, state: dict[str, Any]) -> dict[str, str]:

@@ -7,9 +7,12 @@ from pathlib import Path
 import httpx
 import numpy as np
 import pytest
+from click.testing import CliRunner
 from study_fixture import write_study
 from survey_client import Participant
 
+import fakesss.cli_study  # noqa: F401  (adds the command)
+from fakesss.cli import commands
 from fakesss.problem import BadInput
 from study_server import walk
 from study_server.app import admin_secret
@@ -17,7 +20,7 @@ from study_server.export import mode_to_analyse
 from study_server.manifest import BuiltStudy, load_study
 from study_server.raters import Effects, QuestionEffects, Rater, default_effects, load_effects, shift
 from study_server.serve import served
-from study_server.simulate import quitting, simulate
+from study_server.simulate import completing, quitting, simulate
 from study_server.site import Mode
 
 Exported = Callable[..., list[dict[str, str]]]
@@ -89,6 +92,26 @@ def test_exactly_as_many_stay_as_asked() -> None:
 def test_counts_that_make_no_sense(study: Path) -> None:
     with pytest.raises(BadInput, match="--completed 9: must be between 0 and --started 5"):
         simulate("http://127.0.0.1:9", load_study(study), "", started=5, completed=9)
+
+
+def test_who_says_how_many_begin_need_not_say_how_many_finish(url: str, study: Path) -> None:
+    assert [completing(started) for started in (44, 22, 10, 1)] == [38, 19, 9, 1]
+    result = CliRunner().invoke(commands, ["simulate", str(study), "--url", url, "--started", "4", "--json"])
+    assert result.exit_code == 0, result.exception
+    assert (json.loads(result.stdout)["started"], json.loads(result.stdout)["completed"]) == (4, 3)
+
+
+def test_a_seed_below_zero_is_bad_input(study: Path) -> None:
+    result = CliRunner().invoke(commands, ["simulate", str(study), "--seed", "-1"])
+    assert (result.exit_code, "x>=0" in result.stderr) == (2, True)
+
+
+def test_a_page_that_lets_nobody_on_is_said(tmp_path: Path) -> None:
+    """It was posted to for ever, as fast as could be."""
+    asked = {"name": "hand", "text": "Hand?", "choices": ["left"], "screen_out": ["left"], "required": True}
+    study = write_study(tmp_path / "study", survey={"about": [asked]})
+    with served(study) as url, pytest.raises(BadInput, match='the page "about" takes no answer and stays'):
+        simulate(url, load_study(study), admin_secret(study), started=1, progress=False)
 
 
 def test_a_server_out_of_reach(study: Path, monkeypatch: pytest.MonkeyPatch) -> None:
