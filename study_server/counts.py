@@ -6,7 +6,7 @@ from collections.abc import Sequence
 from statistics import median
 from typing import Any
 
-from sqlalchemy import Connection, Integer, RowMapping, Select, Subquery, and_, case, cast, func, select
+from sqlalchemy import Connection, Integer, Select, Subquery, and_, case, cast, func, select
 
 from study_server import schema
 from study_server.sessions import UNDER_WAY, presentations, sessions, status
@@ -20,12 +20,6 @@ SUMS = ("ratings", "checks_failed", "displays_scaled")
 MINUTES = 60
 RECENT_MINUTES = 10
 """Ratings of the last ten minutes count as recent."""
-
-
-def current_study(connection: Connection) -> RowMapping | None:
-    """The study as it is now: the one opened last."""
-    latest = select(schema.studies).order_by(schema.studies.c.opened_at.desc()).limit(1)
-    return connection.execute(latest).mappings().one_or_none()
 
 
 def summaries(study: str, mode: str, now: float, release_s: float) -> Select[Any]:
@@ -110,7 +104,7 @@ def overview(connection: Connection, study: str, mode: str, now: float, release_
         steps[person["step"]] += person["status"] == "active"
         for name in SUMS:
             sums[name] += person[name]
-        if person["duration_s"] is not None:
+        if person["duration_s"] is not None and person["duration_s"] >= 0:  # below 0: the clock was set back
             durations_s.append(person["duration_s"])
     order = schema.order_rows.c
     rows = connection.scalars(select(order.row).where(order.study == study).order_by(order.row)).all()
