@@ -68,7 +68,7 @@ def design_of(study: BuiltStudy) -> Design:
         stimuli=tuple(stimulus.id for stimulus in study.stimuli if stimulus.id not in repeats),
         repeats=repeats,
         questions=tuple(question.name for question in questions),
-        steps=questions[0].scale,
+        steps=tuple(question.scale for question in questions),
         order=survey.order,
         blocks=survey.blocks,
         checks=survey.checks,

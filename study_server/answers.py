@@ -98,7 +98,8 @@ def scales_of(study: BuiltStudy, planned: RowMapping) -> dict[str, int]:
     """What is asked under this picture, instructed item included, with its number of steps."""
     scales = {question.name: question.scale for question in study.settings.question}
     asked = {name: scales[name] for name in planned["questions"]}
-    return asked if planned["check_expected"] is None else asked | {CHECK_NAME: study.settings.question[0].scale}
+    expected = planned["check_expected"]
+    return asked if expected is None else asked | {CHECK_NAME: study.settings.checked_like(asked, expected).scale}
 
 
 def at(near: Sequence[RowMapping], place: int) -> RowMapping | None:
@@ -122,7 +123,8 @@ def store(connection: Connection, planned: RowMapping, sent: Posted, now: float)
     them. The same one again changes nothing; another one is added to `revisions`. A retry is known by its `submission`,
     so a late one cannot undo a revision.
     """
-    shown_at = now - sent.since_shown_ms / 1000
+    longest_ms = max((answer.rt_ms for answer in sent.answers), default=0.0)
+    shown_at = now - max(sent.since_shown_ms, longest_ms) / 1000  # no answer was given after it was stored
     here = {"session": planned["session"], "place": planned["place"]}
     rows = [
         {

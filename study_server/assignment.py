@@ -43,8 +43,8 @@ class Design:
     repeats: Mapping[str, str]
     """Id of a repeated showing -> id of the stimulus that it shows again."""
     questions: tuple[str, ...]
-    steps: int
-    """Steps of the instructed item's scale, 2 .. 11."""
+    steps: tuple[int, ...]
+    """Steps of each question's scale, 2 .. 11. An instructed item has that of the last question asked with it."""
     order: Order = "latin-square"
     blocks: Blocks = "together"
     checks: int = 0
@@ -79,6 +79,7 @@ class Design:
         """
         random = self.lots("repeats")
         questions = question_orders(len(self.groups), self.lots("questions"))
+        scales = dict(zip(self.questions, self.steps, strict=True))
         used = [[0] * (len(self.stimuli) + len(self.repeats)) for _ in self.groups]
         rows = []
         for number, pictures in enumerate(self.picture_orders(questions)):
@@ -90,7 +91,7 @@ class Design:
                 shown = insert_repeats(pictures[question], self.repeats, used[question], random, last, first)
                 last = self.repeats.get(shown[-1], shown[-1])
                 row += [Trial(stimulus, self.groups[question]) for stimulus in shown]
-            rows.append(with_checks(row, self.checks, self.steps, self.lots(f"checks {number}")))
+            rows.append(with_checks(row, self.checks, scales, self.lots(f"checks {number}")))
         return rows
 
     def picture_orders(self, questions: Sequence[Sequence[int]]) -> list[list[list[str]]]:
@@ -106,8 +107,8 @@ class Design:
     def practice_trials(self) -> list[Trial]:
         """Practice: pictures spread evenly over the design, the same for everybody, so that they show its range.
 
-        One picture comes from the middle of the design; more practice than pictures begins again. All questions are
-        asked, no checks, no repeats.
+        One picture comes from the middle of the design; more practice than pictures begins again. Questions are asked
+        as later on: all under each picture, or one under each, in turn. No checks, no repeats.
         """
         k, n = len(self.stimuli), self.practice
         if n > k:
@@ -116,7 +117,8 @@ class Design:
             places = [k // 2]
         else:
             places = [round(i * (k - 1) / (n - 1)) for i in range(n)]
-        return [Trial(self.stimuli[place], self.questions) for place in places]
+        asked = self.groups
+        return [Trial(self.stimuli[place], asked[i % len(asked)]) for i, place in enumerate(places)]
 
     def lots(self, what: str) -> Random:
         """Random numbers for one part of the design, so that a change in one leaves the others as they are."""
@@ -183,14 +185,14 @@ def most_checks(trials: int) -> int:
     return trials // 2
 
 
-def with_checks(row: Sequence[Trial], n: int, steps: int, random: Random) -> list[Trial]:
+def with_checks(row: Sequence[Trial], n: int, scales: Mapping[str, int], random: Random) -> list[Trial]:
     """`row` with n instructed items: one in each of n equal parts of the trials, at a place drawn by lot.
 
     Never under the first or last trial (from three trials on): the first is still part of learning the task, and
     after the last nothing is left that a lapse would tell about. The answer asked for is drawn by lot; never the
     middle step, which people give who do not want to choose, and never the answer asked for just before, which one
-    line of equal answers would meet. Instructed items: Gummer, Rossmann and Silber (2021), Sociological Methods and
-    Research 50, 238-264.
+    line of equal answers would meet. `scales`: each question's steps. Instructed items: Gummer, Rossmann and Silber
+    (2021), Sociological Methods and Research 50, 238-264.
     """
     checked = list(row)
     inner = range(1, len(row) - 1) if len(row) >= 3 else range(len(row))
@@ -198,6 +200,7 @@ def with_checks(row: Sequence[Trial], n: int, steps: int, random: Random) -> lis
     for i in range(n):
         part = range(i * len(row) // n, (i + 1) * len(row) // n)
         place = random.choice([place for place in part if place in inner])
+        steps = scales[row[place].questions[-1]]
         asked = random.choice([step for step in range(1, steps + 1) if 2 * step != steps + 1 and step != asked])
         checked[place] = replace(checked[place], check=asked)
     return checked

@@ -66,7 +66,7 @@ def shut_page(study: BuiltStudy, mode: str, token: str, language: str, step: str
 
 def declined_page(study: BuiltStudy, mode: str, token: str, language: str, external: External | None) -> dict[str, Any]:
     """For somebody who does not agree to take part. Nothing is stored."""
-    code = study.settings.survey.prolific.no_consent
+    code = study.settings.survey.prolific.no_consent if external else ""
     return {
         **frame(study, mode, token, "declined", language),
         "return_url": return_url(study.settings.survey, code, external is not None),
@@ -121,17 +121,23 @@ def instructions(study: BuiltStudy, say: Words) -> list[str]:
 
 def last_page(survey: Survey, session: Session, say: Words) -> dict[str, Any]:
     """After the last thing asked: thanks, the code, the way back."""
-    code = session["completion_code"] if session["step"] == "done" else survey.prolific.screened_out
+    is_external = session["external_participant"] is not None
+    screened_out = survey.prolific.screened_out if is_external else ""
+    code = session["completion_code"] if session["step"] == "done" else screened_out
     return {
         "paragraphs": paragraphs(say(survey.thanks)) if session["step"] == "done" else [],
         "completion_code": code,
-        "return_url": return_url(survey, code, session["external_participant"] is not None),
+        "return_url": return_url(survey, code, is_external),
     }
 
 
 def return_url(survey: Survey, code: str, is_external: bool) -> str:
-    """Where the last page leads: what the study says, or Prolific for who came from there, or nowhere."""
-    address = survey.return_url or (PROLIFIC if is_external and survey.prolific != type(survey.prolific)() else "")
+    """Where the last page leads: what the study says, or Prolific for who came from there, or nowhere.
+
+    Prolific takes only the codes agreed with it, and an address that needs a code leads nowhere without one.
+    """
+    is_agreed = code in survey.prolific.model_dump().values()
+    address = survey.return_url or (PROLIFIC if is_external and is_agreed else "")
     return address.replace("{code}", quote(code, safe="")) if code or "{code}" not in address else ""
 
 
@@ -167,7 +173,8 @@ def trial_facts(study: BuiltStudy, row: RowMapping, say: Words) -> dict[str, Any
     """One trial: where it stands, its picture, its questions."""
     questions = [shown(question, say) for question in study.settings.question if question.name in row["questions"]]
     if row["check_expected"] is not None:
-        questions.append(instructed(study.settings.question[0], row["check_expected"], say))
+        like = study.settings.checked_like(row["questions"], row["check_expected"])
+        questions.append(instructed(like, row["check_expected"], say))
     return {
         "place": row["place"],
         "trial": row["trial"],
@@ -185,7 +192,7 @@ def shown(question: Question, say: Words) -> dict[str, Any]:
 
 def instructed(like: Question, expected: int, say: Words) -> dict[str, Any]:
     """The item that asks for a certain answer, on the scale of `like`."""
-    return shown(like, say) | {"name": CHECK_NAME, "text": say(texts.CHECK).format(answer=expected)}
+    return shown(like, say) | {"name": CHECK_NAME, "text": say(texts.CHECK).replace("{answer}", str(expected))}
 
 
 def filled(text: str, study: BuiltStudy, say: Words) -> str:

@@ -1,14 +1,14 @@
 """`[[question]]` and `[survey]` of study.toml: what is asked, of whom, in which order."""
 
 import datetime
-from collections.abc import Iterator, Mapping
+from collections.abc import Collection, Iterator, Mapping
 from difflib import get_close_matches
 from typing import Annotated, Any, Literal, Self
 
 from pydantic import AfterValidator, Field, model_validator
 
 from fakesss.problem import Strict, validated
-from study_server import texts
+from study_server import sayings, texts
 from study_server.assignment import Blocks, Order
 from study_server.cells import FORMULA_STARTS
 
@@ -33,9 +33,10 @@ TEXT_KEYS = ("consent", "contact", "retention", "instructions", "comments", "tha
 Language = Literal["en", "de", "es", "fr"]
 Recorded = Literal["address", "browser"]
 ScreenPart = Literal["card", "wedge", "plates"]
-Code = Annotated[str, Field(max_length=100)]
-Origin = Annotated[str, Field(pattern=r"^https?://(\*\.)?[A-Za-z0-9.-]+(:\d+)?$")]
+Code = Annotated[str, Field(max_length=100), AfterValidator(sayings.code)]
+Origin = Annotated[str, AfterValidator(sayings.origin)]
 Name = Annotated[str, Field(min_length=1, max_length=60), AfterValidator(not_a_formula)]
+Choice = Annotated[Text, AfterValidator(sayings.choice)]
 
 
 def refuse_twins(key: str, names: list[str]) -> None:
@@ -60,13 +61,18 @@ class AboutField(Strict):
 
     name: Name = Field(description="column `about_<name>` of participants.csv")
     text: Text = Field(description="the question as shown")
-    choices: tuple[Text, ...] = Field((), description="one is chosen; empty: a line of free text")
+    choices: tuple[Choice, ...] = Field((), description="one is chosen; empty: a line of free text")
     required: bool = Field(False, description="true: the page cannot be left without an answer")
-    screen_out: tuple[Text, ...] = Field((), description="choices after which the participant is thanked and sent away")
+    screen_out: tuple[Choice, ...] = Field(
+        (), description="choices after which the participant is thanked and sent away"
+    )
 
     @model_validator(mode="after")
     def known_choices(self) -> Self:
-        """Only what can be chosen can screen out."""
+        """Each choice is there once, and only what can be chosen can screen out."""
+        twins = sorted({choice for choice in self.choices if self.choices.count(choice) > 1})
+        if twins:
+            raise ValueError(f'the choice "{twins[0]}" is there twice; leave one out')
         for choice in self.screen_out:
             if choice not in self.choices:
                 raise ValueError(f'screen_out "{choice}" is none of the choices; write it as it stands there')
@@ -81,7 +87,7 @@ ABOUT = (
 
 
 class Prolific(Strict):
-    """Completion codes agreed with Prolific. A code left empty is not asked for: that visitor is sent back without."""
+    """Completion codes agreed with Prolific, for who came from there. Where one is left empty no link leads back."""
 
     completed: Code = Field("", description="every rating is stored")
     no_consent: Code = Field("", description="the participant did not agree to take part")
@@ -111,7 +117,7 @@ class Survey(Strict):
         ("card", "wedge"),
         description='"card" (size), "wedge" (brightness), "plates" (colour vision); []: none',
     )
-    instructions: str = Field(
+    instructions: Annotated[str, AfterValidator(sayings.instructions)] = Field(
         "", description="shown before practice; {questions}, {scale}, {keys}: filled in; empty: our own words"
     )
     practice: Annotated[int, Field(ge=0, le=20)] = Field(1, description="number of practice trials")
@@ -121,7 +127,8 @@ class Survey(Strict):
     )
     checks: Annotated[int, Field(ge=0, le=20)] = Field(0, description='number of instructed items ("choose 2 here")')
     failed_checks: Annotated[int, Field(ge=1, le=20)] = Field(
-        2, description="from so many failed instructed items on the code is the one for failed checks"
+        default_factory=lambda given: 1 if given.get("checks") == 1 else 2,
+        description="from so many failed instructed items on the code is the one for failed checks; 2, or 1 of 1",
     )
     scaled_pictures: Literal["flag", "refuse"] = Field(
         "flag", description="a picture that does not fit the window: shown smaller and flagged, or not shown"
@@ -133,7 +140,7 @@ class Survey(Strict):
     comments: str = Field(texts.COMMENTS, description='last question; "": not asked')
     thanks: Text = Field(texts.THANKS, description="shown with the completion code")
     completion_code: Code = Field("", description="the same code for everybody; empty: each gets a random one")
-    return_url: Annotated[str, Field(pattern=r"^(https?://\S+)?$")] = Field(
+    return_url: Annotated[str, AfterValidator(sayings.return_url)] = Field(
         "", description="where the last page leads, {code} filled in; empty: to Prolific for who came from there"
     )
     frame_ancestors: tuple[Origin, ...] = Field(
@@ -143,6 +150,21 @@ class Survey(Strict):
     release_after_minutes: Annotated[float, Field(gt=0, le=10_080)] = Field(
         60.0, description="a session silent for so long counts as dropped out, and its order row is given again"
     )
+
+    @model_validator(mode="after")
+    def codes_that_can_be_given(self) -> Self:
+        """No code for what cannot happen."""
+        if self.checks and self.failed_checks > self.checks:
+            raise ValueError(f"failed_checks: {self.failed_checks}: must be <= {self.checks}, the number of checks")
+        if self.prolific.failed_checks and not self.checks:
+            raise ValueError(
+                "prolific.failed_checks: nobody can get it without instructed items; set checks, or leave it out"
+            )
+        if self.prolific.screened_out and not any(field.screen_out for field in self.about):
+            raise ValueError(
+                "prolific.screened_out: nobody can get it; name choices in a question's screen_out, or leave it out"
+            )
+        return self
 
     @model_validator(mode="after")
     def distinct_names(self) -> Self:
@@ -175,10 +197,17 @@ class SurveySettings(Strict):
         for language in self.survey.translations:
             known = self.own_words(language)
             for text, key in needed.items():
+                if key not in self.named() and self.named().get(text):
+                    raise ValueError(
+                        f'{key}: "{text}" is a key of translations; write it another way, as with a capital'
+                    )
                 if text not in known:
                     line = key if key in self.named() else f'"{text[:60]}"'
                     raise ValueError(f'survey.translations.{language}: {key} is missing; add a line {line} = "..."')
-            for text in known:
+            for text, translation in known.items():
+                wrong = sayings.other_blanks(text, translation)
+                if wrong:
+                    raise ValueError(f'survey.translations.{language}: "{text[:60]}": {wrong}')
                 if text not in needed and text not in texts.OURS:
                     meant = get_close_matches(text, needed, n=1)
                     mend = f'did you mean "{meant[0][:60]}"?' if meant else "write the text as it stands in this file"
@@ -194,6 +223,15 @@ class SurveySettings(Strict):
         named = self.named()
         written: dict[str, str] = self.survey.translations.get(language, {})  # type: ignore[call-overload]
         return {named.get(key) or key: text for key, text in written.items()}
+
+    def checked_like(self, asked: Collection[str], expected: int) -> Question:
+        """The question whose scale an instructed item has: the last one of those `asked` with it.
+
+        Release 1 drew the answer asked for from the first question's scale, and its order rows stay as they are: where
+        the last one's has no such step, the item has the first one's.
+        """
+        last = [question for question in self.question if question.name in asked][-1]
+        return last if expected <= last.scale else self.question[0]
 
     def texts(self) -> Iterator[tuple[str, str]]:
         """(key, text) of everything a participant reads that stands in this file and is none of our own words."""

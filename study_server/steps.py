@@ -77,13 +77,15 @@ def finish(connection: Connection, study: BuiltStudy, session: Session, now: flo
         raise RuntimeError(f"session {session['id']}: {stored} of {expected} ratings stored, yet no trial is left")
     survey, checks = study.settings.survey, failed_checks()
     failed = connection.scalar(select(checks.c.checks_failed).where(checks.c.session == session["id"])) or 0
-    code = completion_code(survey, failed >= survey.failed_checks)
+    is_external = session["external_participant"] is not None
+    code = completion_code(survey, failed >= survey.failed_checks, is_external)
     step = "comments" if survey.comments else "done"
     record(connection, session["id"], now, "finished", {})
     return advance(connection, session, now, step=step, finished_at=now, completion_code=code)
 
 
-def completion_code(survey: Survey, failed: bool) -> str:
-    """The code agreed with Prolific, or the study's own, or one drawn by lot."""
-    agreed = (survey.prolific.failed_checks if failed else "") or survey.prolific.completed or survey.completion_code
-    return agreed or "".join(secrets.choice(CODE_LETTERS) for _ in range(CODE_LENGTH))
+def completion_code(survey: Survey, failed: bool, is_external: bool) -> str:
+    """The code agreed with Prolific for who came from there, or else the study's own, or one drawn by lot."""
+    agreed = (survey.prolific.failed_checks if failed else "") or survey.prolific.completed
+    own = (agreed if is_external else "") or survey.completion_code
+    return own or "".join(secrets.choice(CODE_LETTERS) for _ in range(CODE_LENGTH))

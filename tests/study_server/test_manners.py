@@ -1,6 +1,5 @@
 """Slow, clumsy and quitting raters, blocks by question and instructed items: the whole path before anyone is paid."""
 
-import sqlite3
 from collections import Counter
 from collections.abc import Callable
 from pathlib import Path
@@ -82,29 +81,3 @@ def test_instructed_items_are_obeyed_or_overlooked(tmp_path: Path, csv_rows: Row
     for row in checks:
         assert row["check_passed"] == ("" if not row["rating"] else str(int(row["rating"] == row["check_expected"])))
     assert ("0" in {row["check_passed"] for row in checks}) is fails
-
-
-def test_the_code_tells_failed_checks_from_the_second_on(tmp_path: Path, csv_rows: Rows) -> None:
-    survey = {"checks": 4, "completion_code": "GOOD", "prolific": {"failed_checks": "BAD"}}
-    study = write_study(tmp_path, 9, survey=survey)
-    with served(study, mode="simulated") as url:
-        simulate(
-            url,
-            load_study(study),
-            admin_secret(study),
-            started=12,
-            completed=12,
-            effects=Effects(clumsy=1),
-            progress=False,
-        )
-        people = csv_rows(study, url, "participants")
-    failed = {person["session"]: int(person["checks_failed"]) for person in people}
-    assert min(failed.values()) < 2 <= max(failed.values())
-    for session, code in codes(study).items():
-        assert code == ("BAD" if failed[session] >= 2 else "GOOD")
-
-
-def codes(study: Path) -> dict[str, str]:
-    """Completion codes as they lie in the database."""
-    with sqlite3.connect(study / "ratings.sqlite") as database:
-        return dict(database.execute("SELECT id, completion_code FROM sessions").fetchall())

@@ -32,7 +32,8 @@ def designs(draw: st.DrawFn) -> Design:
     questions = tuple(f"q{i}" for i in range(draw(st.integers(1, 3))))
     order = draw(st.sampled_from(["latin-square"] * 5 + ["random"]))
     blocks = draw(st.sampled_from(["together", "by-question"]))
-    design = Design(stimuli, again(repeated), questions, draw(st.integers(2, 11)), order, blocks, seed=draw(seeds))
+    steps = tuple(draw(st.integers(2, 11)) for _ in questions)
+    design = Design(stimuli, again(repeated), questions, steps, order, blocks, seed=draw(seeds))
     return replace(design, checks=draw(st.integers(0, most_checks(design.trials))))
 
 
@@ -78,7 +79,7 @@ def test_over_the_rows_repeats_stand_everywhere_and_apart(repeated: int) -> None
     used: Counter[int] = Counter()
     longest = []
     for seed in range(10):
-        for row in Design(names(9), again(list(names(9)[:repeated])), ("q",), 7, seed=seed).rows():
+        for row in Design(names(9), again(list(names(9)[:repeated])), ("q",), (7,), seed=seed).rows():
             is_repeat = [trial.stimulus.endswith("r") for trial in row]
             used.update(i for i, yes in enumerate(is_repeat) if yes)
             longest.append(max(len(list(run)) for yes, run in groupby(is_repeat) if yes))
@@ -124,24 +125,26 @@ def test_checks_are_one_in_each_part_and_never_first_or_last(design: Design) -> 
         assert [part_of(place, len(row), design.checks) for place in places] == list(range(design.checks))
         if len(row) >= 3:
             assert not {0, len(row) - 1} & set(places)
+        scales = dict(zip(design.questions, design.steps, strict=True))
         answers = [trial.check for trial in row if trial.check is not None]
-        assert all(1 <= answer <= design.steps and 2 * answer != design.steps + 1 for answer in answers)
+        steps = [scales[trial.questions[-1]] for trial in row if trial.check is not None]
+        assert all(1 <= a <= top and 2 * a != top + 1 for a, top in zip(answers, steps, strict=True))
         assert all(a != b for a, b in pairwise(answers))
 
 
 @given(st.integers(1, 60), seeds)
 def test_most_checks_is_what_fits_and_no_more(trials: int, seed: int) -> None:
     row = [Trial(f"img{i}", ("q",)) for i in range(trials)]
-    checked = with_checks(row, most_checks(trials), 7, Random(seed))
+    checked = with_checks(row, most_checks(trials), {"q": 7}, Random(seed))
     assert sum(trial.check is not None for trial in checked) == most_checks(trials)
     if trials >= 3:
         with pytest.raises(IndexError):  # the first part is the first trial alone, or empty
-            with_checks(row, most_checks(trials) + 1, 7, Random(seed))
+            with_checks(row, most_checks(trials) + 1, {"q": 7}, Random(seed))
 
 
 @pytest.mark.parametrize("steps", [2, 3, 4, 7, 11])
 def test_checks_differ_between_rows_and_no_place_or_answer_is_favoured(steps: int) -> None:
-    design = Design(names(9), {}, ("q1", "q2"), steps, order="random", checks=2)
+    design = Design(names(9), {}, ("q1", "q2"), (steps, steps), order="random", checks=2)
     rows = [[(i, trial.check) for i, trial in enumerate(row) if trial.check is not None] for row in design.rows()]
     places = Counter(place for row in rows for place, _ in row)
     answers = Counter(answer for row in rows for _, answer in row)
@@ -164,7 +167,7 @@ def test_rows_depend_on_nothing_but_the_design_and_can_be_stored_as_json(design:
 
 
 def test_instructed_items_leave_the_order_as_it_was() -> None:
-    design = Design(names(9), again(["img03", "img05"]), ("q1", "q2"), 7, seed=3)
+    design = Design(names(9), again(["img03", "img05"]), ("q1", "q2"), (7, 7), seed=3)
     checked = replace(design, checks=3)
     assert [[replace(trial, check=None) for trial in row] for row in checked.rows()] == design.rows()
 
@@ -173,7 +176,7 @@ def test_instructed_items_leave_the_order_as_it_was() -> None:
     ("wrong", "says"),
     [
         ({"stimuli": ()}, "a design needs a picture and a question"),
-        ({"questions": ()}, "a design needs a picture and a question"),
+        ({"questions": (), "steps": ()}, "a design needs a picture and a question"),
         ({"repeats": {"a": "img00", "b": "img00"}}, "each repeat shows another stimulus"),
         ({"repeats": {"a": "img99"}}, "each repeat shows another stimulus"),
         ({"checks": 2}, "2 checks in 3 trials: at most 1"),
@@ -181,4 +184,4 @@ def test_instructed_items_leave_the_order_as_it_was() -> None:
 )
 def test_an_impossible_design_is_refused(wrong: dict[str, object], says: str) -> None:
     with pytest.raises(ValueError, match=says):
-        replace(Design(names(3), {}, ("q",), 7), **wrong)  # type: ignore[arg-type]
+        replace(Design(names(3), {}, ("q",), (7,)), **wrong)  # type: ignore[arg-type]
