@@ -11,6 +11,7 @@ from study_server.columns import (
     CODEBOOK,
     DISPLAYS,
     EVENTS,
+    FORGOTTEN,
     PARTICIPANTS,
     RATINGS,
     STIMULI,
@@ -24,6 +25,10 @@ from study_server.settings import CHECK_NAME
 
 WIDE = ("session", "participant", "mode", "status", "started_at", "order_row", "language", "checks_failed")
 """What wide.csv says of a session before its answers."""
+
+CHOSEN = "not answered, or withdrawn"
+WRITTEN = f"not answered, withdrawn, {FORGOTTEN}"
+"""What an empty answer about the person means."""
 
 TABLES = ("ratings", "wide", "participants", "displays", "events", "stimuli", "codebook")
 """The exported tables in their order."""
@@ -51,7 +56,7 @@ def participant_columns(study: BuiltStudy) -> dict[str, Column]:
     """The people, with what the study asks about them and stores about their visit."""
     survey = study.settings.survey
     about = {
-        f"about_{asked.name}": Column(asked.text, values=asked.choices, missing="not answered, or withdrawn")
+        f"about_{asked.name}": Column(asked.text, values=asked.choices, missing=CHOSEN if asked.choices else WRITTEN)
         for asked in survey.about
     }
     screen = screen_check.columns(survey.screen_check)

@@ -31,6 +31,7 @@ def flag(description: str, missing: str = "") -> Column:
 
 
 UNANSWERED = "not answered"
+FORGOTTEN = "or deleted by `fakesss forget`"
 SHOWN = "of the first showing, also where a revision counts"
 MODES = ("live", "pilot", "simulated")
 
@@ -125,13 +126,21 @@ PARTICIPANTS = {
         "number of instructed items answered otherwise than asked, as answers now stand", "integer", minimum=0
     ),
     "language": Column("language of the pages", values=("en", "de", "es", "fr")),
-    "comments": Column("what the participant wrote at the end", missing="nothing written, not asked, or withdrawn"),
+    "comments": Column(
+        "what the participant wrote at the end", missing=f"nothing written, not asked, withdrawn, {FORGOTTEN}"
+    ),
     "study_sha256": SHARED["study_sha256"],
 }  # fmt: skip
 
 CLIENT = {
-    "address": Column("network address of the visitor; only if the study asks for it", missing="withdrawn"),
-    "browser": Column("how the browser names itself; only if the study asks for it", missing="not told, or withdrawn"),
+    "address": Column(
+        "network address of the visitor; only if the study asks for it",
+        missing=f"withdrawn, {FORGOTTEN}",
+    ),
+    "browser": Column(
+        "how the browser names itself; only if the study asks for it",
+        missing=f"not told, withdrawn, {FORGOTTEN}",
+    ),
 }
 
 NOT_TOLD = "the browser did not tell"
@@ -159,7 +168,8 @@ EVENTS = {
     "mode": SHARED["mode"],
     "at": Column("when it happened, by the server's clock", "time"),
     "kind": Column(
-        "what happened: the session started or finished, an answer was changed (revised) or not stored (refused)",
+        "what happened: the session started or finished, an answer was changed (revised) or not stored (refused); "
+        "practice left out",
         values=("started", "finished", "revised", "refused"),
     ),
     "detail": Column("what exactly", "json"),

@@ -109,7 +109,8 @@ or a line feed has an apostrophe before it, so that no spreadsheet runs it.
 
 ## Privacy
 
-`participant` is a keyed hash, whose key is not in this dataset. `comments` and free answers (`about_...`) stand as
+`participant` is a keyed hash, whose key is not in this dataset. Network addresses and browser names are left out, also
+where the study stores them. `comments` and free answers (`about_...`) stand as
 they were typed: read them before you publish. This dataset has no license and no authors until you add them to
 `dataset_description.json`, where they stay.
 

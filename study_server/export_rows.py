@@ -1,6 +1,7 @@
 """The rows of the exported tables, read from one snapshot a few sessions at a time: memory does not grow with them."""
 
 import json
+import math
 import time
 from collections.abc import Iterable, Iterator
 from dataclasses import dataclass, field
@@ -174,7 +175,7 @@ def display_rows(source: Source) -> Iterator[Row]:
 
 
 def event_rows(source: Source) -> Iterator[Row]:
-    """What happened besides ratings, in order."""
+    """What happened besides ratings, in order; nothing of practice, whose answers are in no table either."""
     query = (
         select(schema.events)
         .join(schema.sessions)
@@ -182,8 +183,16 @@ def event_rows(source: Source) -> Iterator[Row]:
         .order_by(schema.events.c.id)
     )
     for event in source.connection.execute(query.execution_options(yield_per=500)).mappings():
+        if is_of_practice(source, event["detail"]):
+            continue
         detail = json.dumps(event["detail"], ensure_ascii=False, sort_keys=True)
         yield {**event, "mode": source.mode, "at": iso(event["at"]), "detail": detail}
+
+
+def is_of_practice(source: Source, detail: Row) -> bool:
+    """Whether an event is about a practice trial: a changed answer says so, a refused one has its place."""
+    place: float = detail.get("place", math.inf)
+    return bool(detail.get("practice")) or place < source.study.settings.survey.practice
 
 
 def stimulus_rows(source: Source) -> Iterator[Row]:

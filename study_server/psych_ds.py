@@ -1,7 +1,8 @@
 """The export as a Psych-DS 1.5.0 dataset (https://psych-ds.github.io): a folder, or the same as a ZIP file.
 
 Data files under data/, what they hold in dataset_description.json, the codebook under documentation/, and under
-materials/ the study itself. wide.csv is left out: it holds nothing that the long table does not.
+materials/ the study itself. wide.csv is left out: it holds nothing that the long table does not. Network addresses and
+browser names are left out, because a dataset is made to be published.
 """
 
 import json
@@ -16,7 +17,7 @@ from typing import IO, Any
 
 from study_server.cells import cell, csv_text
 from study_server.codebook import columns_of, described
-from study_server.columns import CODEBOOK, Column
+from study_server.columns import CLIENT, CODEBOOK, Column
 from study_server.dataset_words import changes_text, counted, description_of, readme_text
 from study_server.export import ROWS, snapshot
 from study_server.export_rows import Row, Source
@@ -120,8 +121,10 @@ def parts(source: Source, added: Mapping[str, Any] | None = None, changes: str =
 
 
 def columns(table: str, study: BuiltStudy) -> dict[str, Column]:
-    """The columns of a data file: those of the exported table, and the row's name first."""
-    return {"row_id": ROW_ID, **columns_of(table, study)}
+    """The columns of a data file: the row's name first, then those of the exported table that may be published."""
+    return {"row_id": ROW_ID} | {
+        name: column for name, column in columns_of(table, study).items() if name not in CLIENT
+    }
 
 
 def with_row_ids(table: str, rows: Iterator[Row]) -> Iterator[Row]:

@@ -12,7 +12,7 @@ import pytest
 from exported_study import nobody_came, people, write_hostile_study
 from pydantic import BaseModel
 from study_fixture import write_study
-from survey_client import Participant
+from survey_client import ABOUT, Participant
 
 from fakesss.problem import BadInput
 from study_server import schema
@@ -157,6 +157,31 @@ def test_a_comment_cannot_become_a_formula(url: str, exported: Exported) -> None
         person.rate()
     person.post("comments", comments='=HYPERLINK("http://x")\nsecond, line')
     assert exported("participants")[0]["comments"] == '\'=HYPERLINK("http://x")\nsecond, line'
+
+
+def test_nothing_of_practice_is_exported(url: str, exported: Exported) -> None:
+    """Neither an answer that was changed, nor one that was refused."""
+    person = Participant(url).consent()
+    for step, told in (("about", ABOUT), ("screen", {}), ("instructions", {})):
+        person.post(step, **told)
+    for step in ("practice", "trials"):
+        assert person.state["step"] == step
+        body = person.answers()
+        assert person.send(person.answers(stimulus_sha256="0" * 64)).status_code == 409
+        person.rate(4)
+        body["answers"][0]["rating"] = 5
+        assert person.send(body | {"submission": "another-one"}).json()["saved"][0]["revision"] == 1
+        if step == "practice":
+            person.post("ready")
+    assert [event["kind"] for event in exported("events")] == ["started", "refused", "revised"]
+    assert {row["trial"] for row in exported("displays")} == {"1"}
+
+
+def test_the_codebook_says_what_forgetting_empties(hostile: Path) -> None:
+    book = pd.read_csv(hostile / "codebook.csv", keep_default_na=False)
+    people_told = book[book.table == "participants.csv"].set_index("column").missing
+    forgotten = people_told[people_told.str.contains("fakesss forget")].index
+    assert set(forgotten) == {"comments", "about_job", "address", "browser"}
 
 
 @pytest.mark.parametrize("value", ["=1", "+1", "-1", "@x", "\tx", "\nx"])

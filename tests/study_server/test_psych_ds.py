@@ -24,6 +24,7 @@ from study_fixture import write_study
 from study_server.app import admin_secret
 from study_server.database import open_database
 from study_server.engines import sqlite_url
+from study_server.export import export_ratings
 from study_server.manifest import load_study
 from study_server.psych_ds import DATA, export_psych_ds, name_of
 from study_server.schema import sessions
@@ -195,6 +196,20 @@ def test_the_materials_are_the_study(dataset: Path, tmp_path: Path) -> None:
     (plain / "study.toml").write_text("title = 'y'")
     export_psych_ds(plain, tmp_path / "later")
     assert not (tmp_path / "later" / "materials" / "study.toml").exists()
+
+
+def test_no_network_address_and_no_browser_name_is_published(dataset: Path, tmp_path: Path) -> None:
+    """The study stores both; the plain export has them."""
+    plain, *_ = export_ratings(dataset.parent / "study", tmp_path)
+    stored = cells(plain.with_name("participants.csv"))[0]
+    assert stored["address"] == "127.0.0.1"
+    assert stored["browser"].startswith("python-httpx")
+    for path in dataset.rglob("*"):
+        if path.is_file() and path.suffix != ".png":
+            text = path.read_text(encoding="utf-8")
+            assert stored["address"] not in text
+            assert stored["browser"] not in text
+    assert not {"address", "browser"} & set(cells(next(dataset.glob("data/*participants_data.csv")))[0])
 
 
 def test_again_into_the_same_folder(dataset: Path, copy: Path) -> None:
