@@ -50,7 +50,7 @@ STATUS = {
     408: "slower than a minute",
     409: "not now",
     410: "withdrawn",
-    413: "more than 64 KiB",
+    413: "more than 128 KiB",
     422: "not of the form that is asked for",
     429: "asked too often; wait as long as Retry-After says",
     503: "nothing was stored; try again",

@@ -69,9 +69,10 @@ AtSite = Annotated[Site, Depends(at_site)]
 
 
 async def posted_fields(request: Request) -> dict[str, str]:
-    """A form's fields, posted by a browser's form or as a JSON object of strings.
+    """A form's fields, posted by a browser's form or as a JSON object of strings; lines end in a line feed.
 
-    Raises `HTTPException` 400 for a body that is no JSON, 422 for text that not every database can hold.
+    A form sends two characters for a line's end where one was typed. Raises `HTTPException` 400 for a body that is no
+    JSON, 422 for text that not every database can hold.
     """
     if request.headers.get("content-type", "").startswith("application/json"):
         try:
@@ -84,7 +85,7 @@ async def posted_fields(request: Request) -> dict[str, str]:
         fields = {key: value for key, value in (await request.form()).items() if isinstance(value, str)}
     if not is_text("".join((*fields, *fields.values()))):
         raise HTTPException(422, "The body holds what is no text: half letters (lone surrogates), or NUL.")
-    return fields
+    return {key: value.replace("\r\n", "\n").replace("\r", "\n") for key, value in fields.items()}
 
 
 Fields = Annotated[dict[str, str], Depends(posted_fields)]
