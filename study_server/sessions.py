@@ -92,7 +92,7 @@ def start(connection: Connection, study: BuiltStudy, visitor: Visitor, now: floa
         raise AnotherVersion
     row, trials = emptiest_row(connection, study, visitor.mode, now)
     new = {
-        "id": secrets.token_hex(8),
+        "id": f"s{secrets.token_hex(8)}",  # not digits alone, which a spreadsheet would round
         "token": visitor.token,
         "study": study.identity,
         "mode": visitor.mode,

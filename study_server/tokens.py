@@ -8,6 +8,7 @@ whether the token is of somebody without a name elsewhere: an external person ca
 import base64
 import hashlib
 import hmac
+import re
 import secrets
 from collections.abc import Mapping
 from dataclasses import dataclass
@@ -15,6 +16,8 @@ from typing import Self
 
 BYTES = 16
 ANONYMOUS = b"anonymous\0"
+NUMBER = re.compile(r"[0-9]+(e[0-9]+)?")
+
 LONGEST = 200
 """Characters of an external name that are kept."""
 
@@ -90,5 +93,10 @@ def proof(key: str, message: bytes) -> bytes:
 
 
 def pseudonym(salt: str, text: str) -> str:
-    """A name for `text` that cannot be turned back without `salt`; for exports."""
-    return hmac.new(salt.encode(), text.encode(), hashlib.sha256).hexdigest()[:16]
+    """A name for `text` that cannot be turned back without `salt`; for exports.
+
+    One that spreadsheets and readers of CSV would take for a number, such as 12345e6789012345, gets a letter before it;
+    the others stay what they were in earlier exports.
+    """
+    name = hmac.new(salt.encode(), text.encode(), hashlib.sha256).hexdigest()[:16]
+    return f"p{name}" if NUMBER.fullmatch(name) else name
