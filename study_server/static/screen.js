@@ -41,6 +41,11 @@ export function screenFacts() {
   };
 }
 
+// Resolves with the time stamp of the next frame, before that is painted.
+export function frame() {
+  return new Promise((resolve) => requestAnimationFrame(resolve));
+}
+
 // Time since a picture's first frame, and how much of it the picture could not be seen: the page hidden or not in front,
 // or the picture taken away (`cover`) because it does not fit.
 export class Stopwatch {
@@ -70,7 +75,6 @@ export class Stopwatch {
   // Frames come only while the page is visible. The first callback runs before the frame with the picture is painted;
   // the second one's time stamp is the first moment at which it surely is on screen.
   async start() {
-    const frame = () => new Promise((resolve) => requestAnimationFrame(resolve));
     await frame();
     this.shownAt = await frame();
     this.away = 0;

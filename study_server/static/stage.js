@@ -1,6 +1,6 @@
 // The place where one picture stands: never a wrong one, and never a shrunk one where the study refuses that.
 import { Damaged, duePicture } from "/static/pictures.js";
-import { drawn, fitToPixels, isScaled, screenFacts } from "/static/screen.js";
+import { drawn, fitToPixels, frame, isScaled, screenFacts } from "/static/screen.js";
 
 export class Stage {
   #image = null;
@@ -13,6 +13,7 @@ export class Stage {
     this.isShrinkingRefused = false;
     this.notice = paragraph("does-not-fit", words.doesNotFit);
     window.addEventListener("resize", () => this.#image && this.#fit());
+    document.addEventListener("visibilitychange", () => this.#image && this.#fit());
     followRatio();
   }
 
@@ -36,21 +37,32 @@ export class Stage {
   }
 
   display() {
-    return { ...screenFacts(), ...this.#smallest };
+    return { ...screenFacts(), ...(this.#smallest ?? this.#drawn()) };
   }
 
   #fit() {
+    if (!this.place.parentElement.clientWidth) return; // browsers pass through a window of 1 x 1 while they resize
     this.notice.hidden = true; // it would move the picture
     fitToPixels(this.#image);
-    const scaled = isScaled(this.#image);
-    const isCovered = scaled && this.isShrinkingRefused;
+    const isCovered = isScaled(this.#image) && this.isShrinkingRefused;
     this.place.classList.toggle("covered", isCovered);
     this.notice.hidden = !isCovered;
-    if (!isCovered) this.#note({ ...drawn(this.#image), scaled });
+    this.#noteOncePainted(this.#image, this.#drawn());
     this.covered(isCovered);
   }
 
-  #note(now) {
+  #drawn() {
+    return { ...drawn(this.#image), scaled: isScaled(this.#image) };
+  }
+
+  // A size counts if a frame with it was painted, and somebody could look at it: frames come only while the page is
+  // visible, and the first one begins before anything is painted.
+  async #noteOncePainted(image, then) {
+    await frame();
+    await frame();
+    if (image !== this.#image || this.isCovered || document.visibilityState !== "visible") return;
+    const now = this.#drawn();
+    if (now.drawn_width_px !== then.drawn_width_px) return; // it is another already, of which `#fit` tells
     if (!this.#smallest || now.drawn_width_px < this.#smallest.drawn_width_px) this.#smallest = now;
   }
 

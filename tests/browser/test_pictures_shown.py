@@ -121,6 +121,7 @@ def test_a_picture_that_does_not_fit_is_flagged(page: Page, tmp_path: Path) -> N
         open_trials(page, url)
         resize(page, 300)  # shrunk for a while counts as shrunk
         expect(page.locator("#stage img")).not_to_have_js_property("width", 400)
+        page.evaluate(PAINTED)
         width = page.locator("#stage img").evaluate("img => img.getBoundingClientRect().width")
         resize(page, 900)
         rate(page, "44")
@@ -130,6 +131,56 @@ def test_a_picture_that_does_not_fit_is_flagged(page: Page, tmp_path: Path) -> N
     assert (row["drawn_width_px"], row["drawn_height_px"]) == pytest.approx((width, width), abs=0.02)
     assert row["scaled"] == 1
     assert row["gamut"] in ("srgb", "p3", "rec2020")
+
+
+PAINTED = "new Promise(done => requestAnimationFrame(() => requestAnimationFrame(() => requestAnimationFrame(done))))"
+"""What stands on the page now was on the screen."""
+
+NEVER_LOOKED_AT = {
+    "for less than a frame": """() => {
+        const room = document.querySelector("main");
+        const sized = (width) => {
+            room.style.width = width;
+            dispatchEvent(new Event("resize"));
+        };
+        requestAnimationFrame(() => {
+            sized("150px");
+            requestAnimationFrame(() => sized(""));
+        });
+    }""",
+    "without room": "() => (document.querySelector('main').style.width = '1px', dispatchEvent(new Event('resize')))",
+    "hidden": """() => {
+        Object.defineProperty(document, "visibilityState", { configurable: true, value: "hidden" });
+        document.querySelector("main").style.width = "150px";
+        dispatchEvent(new Event("resize"));
+    }""",
+}
+SEEN_AGAIN = """() => {
+    delete document.visibilityState;
+    document.querySelector("main").style.width = "";
+    document.dispatchEvent(new Event("visibilitychange"));
+}"""
+
+
+@pytest.mark.parametrize("how", NEVER_LOOKED_AT)
+@pytest.mark.parametrize("policy", ["flag", "refuse"])
+def test_a_size_at_which_nobody_looked_is_not_how_it_was_drawn(
+    page: Page, tmp_path: Path, how: str, policy: str
+) -> None:
+    """Chromium passes through a window of 1 x 1 while it resizes: pictures seemed to have been drawn 0 pixels wide."""
+    study = short_study(tmp_path, size=400, scaled_pictures=policy)
+    with served(study) as url:
+        open_trials(page, url)
+        page.evaluate(NEVER_LOOKED_AT[how])
+        page.evaluate(PAINTED)
+        page.evaluate(PAINTED)
+        if how == "without room":
+            assert page.locator("#stage.covered").count() == 0
+        page.evaluate(SEEN_AGAIN)
+        rate(page, "44")
+        saved(page)
+    (row,) = displays(study)
+    assert (row["drawn_width_px"], row["drawn_height_px"], row["scaled"]) == (400, 400, 0)
 
 
 def test_a_picture_changed_on_the_server_is_not_shown(page: Page, browser: Browser, url: str, study: Path) -> None:
