@@ -7,7 +7,7 @@ from typing import Annotated, Any, Literal, Self
 
 from pydantic import AfterValidator, Field, model_validator
 
-from fakesss.problem import Strict, validated
+from fakesss.problem import BadInput, Strict, validated
 from study_server import sayings, texts
 from study_server.assignment import Blocks, Order
 from study_server.cells import FORMULA_STARTS
@@ -248,10 +248,25 @@ def is_words(text: str) -> bool:
     return any(map(str.isalpha, text))
 
 
+def refuse_nul(value: object, where: str) -> None:
+    """`BadInput` naming the place of a text with NUL in it: PostgreSQL cannot hold one."""
+    if isinstance(value, str) and "\0" in value:
+        raise BadInput(f"{where}: holds the character NUL (\\u0000), which is no text; leave it out")
+    if isinstance(value, Mapping):
+        for key, part in value.items():
+            refuse_nul(key, where)
+            refuse_nul(part, f"{where}.{key}")
+    elif isinstance(value, list):
+        for number, part in enumerate(value, 1):
+            refuse_nul(part, f"{where}[{number}]")
+
+
 def check_survey(study_table: Mapping[str, Any], source: str) -> SurveySettings:
     """The survey's part of a whole study.toml; other tables are left to their owners.
 
     Raises `BadInput` naming `source`, the key and the nearest valid name.
     """
     owned = {key: study_table[key] for key in ("title", "question", "survey") if key in study_table}
+    for key, value in owned.items():
+        refuse_nul(value, f"{source}: {key}")
     return validated(SurveySettings, owned, source)
