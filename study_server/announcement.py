@@ -2,6 +2,7 @@
 
 import os
 from collections.abc import Sequence
+from datetime import date
 
 from sqlalchemy import text
 
@@ -27,7 +28,15 @@ def announcement(site: Site, url: str, proxies: Sequence[str], workers: int, *, 
         f"  processes     {workers}",
         f"  proxies       {believed(proxies)}",
     ]
-    return "\n".join([*lines, *warnings(site.database, is_local, bool(proxies))])
+    told = [*overdue(site.study.settings.survey.retention_until), *warnings(site.database, is_local, bool(proxies))]
+    return "\n".join([*lines, *(f"  {line}" for line in told)])
+
+
+def overdue(retention_until: date | None) -> list[str]:
+    """Participants read a date at consent that is past."""
+    if retention_until is None or retention_until >= date.today():
+        return []
+    return [f"Warning: retention_until = {retention_until} is past: until then answers were to be kept."]
 
 
 def believed(proxies: Sequence[str]) -> str:
@@ -48,4 +57,4 @@ def warnings(database: Database, is_local: bool, has_proxies: bool) -> list[str]
         with database.reading() as connection:
             if connection.scalar(text("SELECT current_setting('fsync')")) == "off":
                 told.append("Warning: this PostgreSQL has fsync = off: a power cut can lose acknowledged answers.")
-    return [f"  {line}" for line in told]
+    return told

@@ -52,6 +52,7 @@ def create_app(
     app.add_middleware(WebSafety, report_script=report_script, frame_ancestors=frame_ancestors)
     app.mount("/static", StaticFiles(directory=HERE / "static"))
     app.get("/health")(health)
+    app.head("/health", include_in_schema=False)(health)  # as monitors ask
     for router in (pictures.router, plates.router, admin.router, participant.router):
         app.include_router(router)
     app.add_exception_handler(DatabaseError, not_saved)

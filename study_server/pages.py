@@ -2,7 +2,7 @@
 
 import hashlib
 import re
-from collections.abc import Collection, Sequence
+from collections.abc import Collection, Mapping, Sequence
 from pathlib import Path
 from typing import Any
 from urllib.parse import quote, urlencode
@@ -35,13 +35,9 @@ def consent_page(study: BuiltStudy, mode: str, token: str, language: str, extern
     """Before anything is stored."""
     survey = study.settings.survey
     say = words(study.settings, language)
-    if survey.consent:
-        told = paragraphs(say(survey.consent))
-    else:
-        told = [*map(say, texts.CONSENT), say(texts.STORED[tuple(sorted(set(survey.record)))])]
     return {
         **frame(study, mode, token, "consent", language),
-        "paragraphs": told,
+        "paragraphs": paragraphs(say(survey.consent)) if survey.consent else our_consent(survey, say, external),
         "contact": say(survey.contact),
         "retention": say(survey.retention),
         "retention_until": survey.retention_until.isoformat() if survey.retention_until else "",
@@ -50,6 +46,20 @@ def consent_page(study: BuiltStudy, mode: str, token: str, language: str, extern
         "phones": survey.phones,
         "external": {} if external is None else external.as_query(),
     }
+
+
+def our_consent(survey: Survey, say: Words, external: External | None) -> list[str]:
+    """What taking part means and all that is stored of this visitor, a paragraph each."""
+    told = [*map(say, texts.CONSENT)]
+    if survey.screen_check:
+        parts = [texts.SCREEN_PARTS[part] for part in texts.SCREEN_PARTS if part in survey.screen_check]
+        told.append(" ".join(map(say, (texts.SCREEN, *parts))))
+    if external is not None:
+        told.append(say(texts.EXTERNAL))
+    told.append(say(texts.STORED[tuple(sorted(set(survey.record)))]))
+    if not (survey.retention or survey.retention_until):
+        told.append(say(texts.NO_DATE))
+    return told
 
 
 def language_link(language: str, external: External | None) -> dict[str, str]:
@@ -109,7 +119,19 @@ def page(
 def asked_about(field: dict[str, Any], say: Words) -> dict[str, Any]:
     """A question about the participant. `choices` are what is stored; `labels` what is read."""
     del field["screen_out"]  # nobody is told which answer lets them in
-    return field | {"text": say(field["text"]), "labels": [say(choice) for choice in field["choices"]]}
+    told = {"text": say(field["text"]), "labels": [say(choice) for choice in field["choices"]]}
+    return field | told | {"given": "", "problem": ""}
+
+
+def about_again(
+    connection: Connection, study: BuiltStudy, session: Session, values: Mapping[str, str], problems: Mapping[str, str]
+) -> dict[str, Any]:
+    """The questions about the participant once more, with what was given and what is wrong with it."""
+    say = words(study.settings, session["language"])
+    data = page(connection, study, session)
+    for field in data["fields"]:
+        field |= {"given": values.get(field["name"], ""), "problem": say(problems.get(field["name"], ""))}
+    return data | {"error": say(texts.N_("Nothing was saved yet: please look again at what is marked."))}
 
 
 def instructions(study: BuiltStudy, say: Words) -> list[str]:

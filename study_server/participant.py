@@ -53,6 +53,7 @@ async def own_token(request: Request, site: AtSite, token: str) -> str:
 Token = Annotated[str, Depends(own_token)]
 
 
+@router.head("/", include_in_schema=False)
 @router.get("/")
 def link(request: Request, site: AtSite) -> Response:
     """The link that is sent out: gives the visitor an address of their own. Stores nothing."""
@@ -221,14 +222,20 @@ def withdraw(request: Request, site: AtSite, token: Token, fields: Fields) -> Re
 
 @router.post("/s/{token}/{step}")
 def leave_step(request: Request, site: AtSite, token: Token, step: str, fields: Fields) -> Response:
-    """Leaves a step that asks nothing or asks by a form; a step that is not the current one stays as it is."""
+    """Leaves a step that asks nothing or asks by a form; a step that is not the current one stays as it is.
+
+    422 is the same page again, which says what was wrong.
+    """
     now = time.time()
     with site.database.writing() as connection:
         session = find(request, connection, token, lock=True)
         if session is None or step not in steps.LEAVE:
             return sorry(request, 404, STRANGER)
         if session["step"] == step and not is_shut_out(site, connection, session):
-            steps.LEAVE[step](connection, site.study, session, fields, now)
+            problems = steps.LEAVE[step](connection, site.study, session, fields, now)
+            if problems:
+                again = pages.about_again(connection, site.study, session, fields, problems)
+                return answer(request, "about.html", again, 422)
     return RedirectResponse(f"/s/{token}", 303)
 
 

@@ -9,7 +9,8 @@ from study_server.counts import failed_checks
 from study_server.manifest import BuiltStudy
 from study_server.screen_check import leave_screen
 from study_server.sessions import Session, advance, after_about, expected_and_stored, record
-from study_server.settings import Survey
+from study_server.settings import AboutField, Survey
+from study_server.texts import N_
 
 CODE_LETTERS = "ABCDEFGHJKLMNPQRSTUVWXYZ23456789"
 """Without I, O, 0 and 1, which are mistaken for one another when copied by hand."""
@@ -17,19 +18,30 @@ CODE_LETTERS = "ABCDEFGHJKLMNPQRSTUVWXYZ23456789"
 CODE_LENGTH = 8
 LONGEST_TEXT = 10_000
 
+UNANSWERED = N_("Please answer this question.")
+NO_CHOICE = N_("Please choose one of these answers.")
+
 Values = Mapping[str, str]
+Problems = Mapping[str, str]
+"""What is wrong with a form: field -> sentence. Nothing: the step is left."""
 
 
-def leave_about(connection: Connection, study: BuiltStudy, session: Session, values: Values, now: float) -> None:
+def leave_about(connection: Connection, study: BuiltStudy, session: Session, values: Values, now: float) -> Problems:
     """Keeps the answers about the participant; stays if a required one is missing or is none of the choices."""
-    told = {}
-    for field in study.settings.survey.about:
-        value = values.get(field.name, "").strip()[:LONGEST_TEXT]
-        if (field.required and not value) or (value and field.choices and value not in field.choices):
-            return
-        told[field.name] = value
-    out = any(told[field.name] in field.screen_out for field in study.settings.survey.about)
-    advance(connection, session, now, step="screened_out" if out else after_about(study), about=told)
+    asked = study.settings.survey.about
+    told = {field.name: values.get(field.name, "").strip()[:LONGEST_TEXT] for field in asked}
+    problems = {field.name: problem(field, told[field.name]) for field in asked if problem(field, told[field.name])}
+    if not problems:
+        out = any(told[field.name] in field.screen_out for field in asked)
+        advance(connection, session, now, step="screened_out" if out else after_about(study), about=told)
+    return problems
+
+
+def problem(field: AboutField, value: str) -> str:
+    """Why `value` is no answer to this question, in a sentence; empty if it is one."""
+    if not value:
+        return UNANSWERED if field.required else ""
+    return NO_CHOICE if field.choices and value not in field.choices else ""
 
 
 def leave_instructions(connection: Connection, study: BuiltStudy, session: Session, _: Values, now: float) -> None:
@@ -47,7 +59,7 @@ def leave_comments(connection: Connection, _study: BuiltStudy, session: Session,
     advance(connection, session, now, step="done", comments=values.get("comments", "").strip()[:LONGEST_TEXT] or None)
 
 
-LEAVE: dict[str, Callable[[Connection, BuiltStudy, RowMapping, Values, float], None]] = {
+LEAVE: dict[str, Callable[[Connection, BuiltStudy, RowMapping, Values, float], Problems | None]] = {
     "about": leave_about,
     "screen": leave_screen,
     "instructions": leave_instructions,

@@ -17,7 +17,19 @@ CONSENT = (
     N_("We store your answers and the time they took, the size of your window and how large and in which colours your "
        "screen showed each picture."),
 )  # fmt: skip
-"""One paragraph each; what is stored about the person besides is said by `STORED`."""
+"""One paragraph each; what is stored besides follows from the settings and from who comes, as the next texts say."""
+
+SCREEN = N_("Before the pictures come checks of your screen, which you may leave out. We store its size in pixels and "
+            "the range of its colours, as your browser tells them.")  # fmt: skip
+SCREEN_PARTS = {
+    "card": N_(
+        "If you measure your screen with a bank card, we store how large its pixels are, and nothing of the card."
+    ),
+    "wedge": N_("We store how well you can tell dark and bright patches apart on your screen."),
+    "plates": N_("We also look at your colour vision: we store which numbers you read on coloured plates."),
+}
+EXTERNAL = N_("We store the names that the service which sent you here has for you, for this study and for your visit, "
+              "so that you can be paid. In the tables of answers a pseudonym stands instead.")  # fmt: skip
 
 STORED = {
     (): N_("We store neither your name nor your network address nor which browser you use."),
@@ -25,6 +37,8 @@ STORED = {
     ("browser",): N_("We also store which browser you use, but neither your name nor your network address."),
     ("address", "browser"): N_("We also store your network address and which browser you use, but not your name."),
 }
+
+NO_DATE = N_("No date is set on which your answers will be deleted.")
 
 INSTRUCTIONS = (
     N_("You will see one picture at a time, with {questions} under it. Look at the picture as long as you like, then "

@@ -36,10 +36,10 @@ class Walked:
     save_ms: list[float] = field(default_factory=list)
 
 
-def patiently(client: httpx.Client, method: str, path: str, **how: Any) -> httpx.Response:
+def patiently(client: httpx.Client, method: str, path: str, *, answered: int = 200, **how: Any) -> httpx.Response:
     """A request repeated while there is no connection, the server is in trouble (5xx) or asks to wait (429).
 
-    Raises `BadInput` after `PATIENCE_S`, or if the server refuses.
+    Raises `BadInput` after `PATIENCE_S`, or if the server refuses, except with the status `answered`.
     """
     deadline = time.monotonic() + PATIENCE_S
     wait = 0.05
@@ -56,7 +56,7 @@ def patiently(client: httpx.Client, method: str, path: str, **how: Any) -> httpx
             raise BadInput(f"{client.base_url}: gave no answer for {PATIENCE_S:.0f} s ({trouble}); is it being served?")
         time.sleep(wait)
         wait = min(2 * wait, 2.0)
-    if response.is_client_error:
+    if response.is_client_error and response.status_code != answered:
         raise BadInput(f"{client.base_url}: refused {method} {path.split('/')[1]} ({response.text[:200]})")
     return response
 
@@ -94,8 +94,9 @@ def walk(url: str, rater: Rater, quits_after: int | None, saved: Callable[[], ob
 def leave(client: httpx.Client, rater: Rater, state: dict[str, Any]) -> dict[str, Any]:
     """Send this page's form; gives the next state. `BadInput` if that is the same page: it would be so for ever."""
     step = state["step"]
-    following: dict[str, Any] = patiently(client, "POST", f"{state['here']}/{step}", json=fill_in(rater, state)).json()
-    if following["step"] == step:
+    form = fill_in(rater, state)
+    following: dict[str, Any] = patiently(client, "POST", f"{state['here']}/{step}", answered=422, json=form).json()
+    if "error" in following or following["step"] == step:
         raise BadInput(
             f'{client.base_url}: the page "{step}" takes no answer and stays; look at it in a browser, and mend its '
             "questions in study.toml (a choice that can be taken and does not screen out)"

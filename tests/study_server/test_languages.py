@@ -210,7 +210,9 @@ def test_what_is_stored_is_the_text_as_the_study_has_it(in_four: str) -> None:
     hand = person.state["fields"][0]
     assert hand["labels"] == [TEXTS["de"]["left"], TEXTS["de"]["right"]]
     assert hand["choices"] == [TEXTS["en"]["left"], TEXTS["en"]["right"]]
-    assert person.post("about", hand=TEXTS["de"]["left"])["step"] == "about"  # no choice of this study
+    other = person.client.post(f"{person.here}/about", json={"hand": TEXTS["de"]["left"]})  # no choice of this study
+    assert other.status_code == 422
+    assert other.json()["fields"][0]["problem"] == catalogue("de").gettext("Please choose one of these answers.")
     assert person.post("about", hand=TEXTS["en"]["left"])["step"] == "screen"
 
 

@@ -93,6 +93,12 @@ def test_a_link_that_was_not_filled_in_is_told_so(url: str, query: str, name: st
     )
 
 
+@pytest.mark.parametrize(("address", "status"), [("/", 303), ("/health", 200)])
+def test_what_only_looks_whether_we_are_there(url: str, address: str, status: int) -> None:
+    response = httpx.head(f"{url}{address}")
+    assert (response.status_code, response.content) == (status, b"")
+
+
 def test_tokens_say_whether_they_are_somebodys(monkeypatch: pytest.MonkeyPatch) -> None:
     person, other = External("s1", "p1"), External("s1", "p2")
     mine, anybodys = make_token("key", person), make_token("key", None)

@@ -9,7 +9,9 @@ from survey_client import Participant
 
 from fakesss.problem import BadInput
 from study_server.adoption import design_of
+from study_server.announcement import announcement
 from study_server.answers import scales_of
+from study_server.app import create_app
 from study_server.manifest import load_study
 from study_server.serve import served
 from study_server.settings import check_survey
@@ -86,3 +88,10 @@ def test_an_order_row_that_release_1_drew_can_still_be_passed(tmp_path: Path) ->
     study = load_study(write_study(tmp_path, question=SCALES, survey={"checks": 1, "blocks": "by-question"}))
     drawn: Any = {"questions": ["b"], "check_expected": 6}
     assert scales_of(study, drawn) == {"b": 3, "check": 7}
+
+
+@pytest.mark.parametrize(("day", "is_past"), [("2020-02-29", True), ("2999-01-01", False)])
+def test_a_date_of_deletion_that_is_past_is_said_at_the_start(tmp_path: Path, day: str, is_past: bool) -> None:
+    site = create_app(write_study(tmp_path, survey={"retention_until": day})).state.site
+    said = announcement(site, "http://127.0.0.1:1", (), 1, is_local=True)
+    assert (f"Warning: retention_until = {day} is past" in said) is is_past

@@ -149,8 +149,20 @@ def test_a_form_sent_twice_or_late_changes_nothing(url: str) -> None:
 
 def test_about_needs_its_required_fields_and_known_choices(url: str) -> None:
     person = Participant(url).consent()
-    assert person.post("about", age="25-34")["step"] == "about"
-    assert person.post("about", **{**ABOUT, "age": "<script>"})["step"] == "about"
+    for told, why in (
+        ({"age": "25-34"}, {"background": "Please answer this question.", "vision": "Please answer this question."}),
+        ({**ABOUT, "age": "<script>"}, {"age": "Please choose one of these answers."}),
+    ):
+        refused = person.client.post(f"{person.here}/about", json=told)
+        assert refused.status_code == 422
+        page = refused.json()
+        assert page["step"] == "about" and page["error"].startswith("Nothing was saved yet")
+        assert {field["name"]: field["problem"] for field in page["fields"] if field["problem"]} == why
+        assert {field["name"]: field["given"] for field in page["fields"] if field["given"]} == told
+        shown = person.client.post(f"{person.here}/about", data=told, headers={"Accept": "text/html"}).text
+        assert all(sentence in shown for sentence in (page["error"], *why.values()))
+        assert "<script>" not in shown.split("<main>")[1]
+        assert shown.count(" checked") == sum(value != "<script>" for value in told.values())
     assert person.post("about", **ABOUT)["step"] == "screen"
 
 
