@@ -68,15 +68,18 @@ def snapshot(study_folder: Path, mode: Mode, database_url: str | None) -> Iterat
 
 
 def left_out(study_folder: Path, mode: Mode, database_url: str | None = None) -> list[str]:
-    """What else the database holds than this mode's sessions of the folder's study, a sentence each."""
+    """That there is no session of this mode of the folder's study, and what else there is: a sentence each."""
     study = load_study(Path(study_folder))
     database = open_existing(study_folder, database_url)
     version = (sessions.study == study.identity).label("version")
     query = select(version, sessions.mode, func.count()).group_by(version, sessions.mode).order_by(sessions.mode)
     with database.reading() as connection:
         found = connection.execute(query).all()
-    holds = f"{shown_url(database.engine.url)}: also holds"
-    told = [
+    shown = shown_url(database.engine.url)
+    holds = f"{shown}: also holds"
+    mine = any(is_ours and held == mode for is_ours, held, _ in found)
+    told = [] if mine else [f"{shown}: holds no {mode} session of this study; the tables have no rows of people"]
+    told += [
         f"{holds} {n} {other} session(s), left out here; `fakesss export --mode {other}` writes them"
         for is_ours, other, n in found
         if is_ours and other != mode

@@ -11,6 +11,7 @@ from survey_client import Participant
 
 from fakesss.problem import BadInput
 from study_server.app import create_app
+from study_server.database import default_url
 from study_server.export import export_ratings, left_out
 from study_server.serve import served
 
@@ -32,16 +33,17 @@ def test_a_pilot_can_be_exported_after_the_study_was_changed(study: Path, tmp_pa
         Participant(url).consent()
     assert rated(study, tmp_path / "changed", "pilot") == 0
     assert left_out(study, "live") == [
-        f"sqlite:///{study}/ratings.sqlite: also holds 1 session(s) of another version of this study, "
+        f"{default_url(study)}: also holds 1 session(s) of another version of this study, "
         "left out here; with the study's folder as it was then they can be exported"
     ]
-    file = f"sqlite:///{study}/ratings.sqlite"
+    file = default_url(study)
     assert rated(before, tmp_path / "out", "pilot", file) == 6
     hints = left_out(before, "live", file)
-    assert (
-        hints[0] == f"{file}: also holds 1 pilot session(s), left out here; `fakesss export --mode pilot` writes them"
-    )
-    assert len(hints) == 2
+    assert hints[:2] == [
+        f"{file}: holds no live session of this study; the tables have no rows of people",
+        f"{file}: also holds 1 pilot session(s), left out here; `fakesss export --mode pilot` writes them",
+    ]
+    assert len(hints) == 3
     assert len(left_out(before, "pilot", file)) == 1
 
 
