@@ -3,7 +3,7 @@
 import contextlib
 import logging
 import os
-from collections.abc import Callable, Iterator
+from collections.abc import AsyncIterator, Callable, Iterator
 from pathlib import Path
 
 from fastapi import FastAPI, Request, Response
@@ -46,7 +46,7 @@ def create_app(
     Raises `BadInput` if the study is not built, study.toml or a picture is not as built, or the database is unusable.
     """
     site = open_site(Path(study_folder), database_url, mode, make_report)
-    app = FastAPI(title=site.study.title, docs_url=None, redoc_url=None)
+    app = FastAPI(title=site.study.title, docs_url=None, redoc_url=None, lifespan=closing)
     app.state.site = site
     frame_ancestors = site.study.settings.survey.frame_ancestors
     app.add_middleware(WebSafety, report_script=report_script, frame_ancestors=frame_ancestors)
@@ -62,6 +62,13 @@ def create_app(
     app.add_exception_handler(admin.Locked, admin.ask_secret)
     app.openapi = described(app)  # type: ignore[method-assign]
     return app
+
+
+@contextlib.asynccontextmanager
+async def closing(app: FastAPI) -> AsyncIterator[None]:
+    """Closes the database when no request is under way any more: uvicorn then ends the process by the signal it got."""
+    yield
+    app.state.site.database.close()
 
 
 def open_site(folder: Path, url: str | None, mode: Mode, make_report: Callable[[], Path] | None) -> Site:

@@ -18,9 +18,9 @@ from sqlalchemy.exc import DatabaseError, TimeoutError
 
 from fakesss.problem import BadInput
 from study_server import schema
-from study_server.engines import AT_ONCE, connect, parsed_url, shown_url, sqlite_file, sqlite_url
+from study_server.engines import AT_ONCE, connect, empty_log, parsed_url, shown_url, sqlite_file, sqlite_url
 from study_server.foreign_tables import check_columns, holds_ours
-from study_server.group_commit import GroupCommit
+from study_server.group_commit import LOG_WAIT_S, GroupCommit
 from study_server.retries import Retries
 from study_server.upgrades import upgrade
 
@@ -66,14 +66,21 @@ class Database:
         """The same without waiting, for asynchronous callers: `await asyncio.wrap_future(database.submit(work))`."""
         return self.writer.submit(work)
 
+    def empty_log(self) -> None:
+        """See to it that what a transaction deleted is gone from SQLite's log too; PostgreSQL's is its own matter."""
+        if isinstance(self.writer, GroupCommit):
+            self.writer.empty_log()
+
     def close(self) -> None:
         """What is waiting is written, and the connections closed; a use after that opens others."""
         finish(self.writer, self.engine)
 
 
 def finish(writer: GroupCommit | Retries, engine: Engine) -> None:
-    """Write what is waiting, then close the connections."""
+    """Write what is waiting, so that the file of SQLite alone is whole, then close the connections."""
     writer.close()
+    if isinstance(writer, GroupCommit):
+        empty_log(engine, LOG_WAIT_S)
     engine.dispose()
 
 

@@ -1,6 +1,8 @@
 """Engines for the two databases we know, set so that a commit means: on disk, and nobody waits for ever."""
 
+import contextlib
 import re
+import sqlite3
 from pathlib import Path
 from typing import Any
 
@@ -106,11 +108,28 @@ def prepare_sqlite(connection: Any, _record: Any) -> None:
     """Pragmas of every new SQLite connection.
 
     synchronous=FULL makes a commit wait for the disk: without it a rating could be acknowledged and lost.
-    secure_delete overwrites what a withdrawal deletes.
+    secure_delete overwrites what a withdrawal deletes, once `empty_log` has brought that into the file.
     """
     connection.isolation_level = None  # the driver must not begin transactions by itself
     for pragma in ("journal_mode=WAL", "synchronous=FULL", "foreign_keys=ON", "secure_delete=ON"):
         connection.execute(f"PRAGMA {pragma}")
+
+
+def empty_log(engine: Engine, wait_s: float) -> bool:
+    """Bring all that SQLite's -wal holds into the file and cut it to nothing, so that the file alone is whole.
+
+    Whether it is so; not if somebody reads an older snapshot for longer than `wait_s`, during which nobody can write,
+    or if the disk is full. By a connection of its own, for those of the pool may all be in use.
+    """
+    file = Path(str(engine.url.database))
+    if not file.is_file():
+        return True
+    try:
+        with contextlib.closing(sqlite3.connect(file, wait_s, isolation_level=None)) as connection:
+            is_busy: int = connection.execute("PRAGMA wal_checkpoint(TRUNCATE)").fetchone()[0]
+    except sqlite3.Error:
+        return False
+    return not is_busy
 
 
 def begin_sqlite(connection: Connection) -> None:

@@ -5,6 +5,7 @@ while a commit is under way shares the next one with all others who do: a group 
 "Implementation techniques for main memory database systems"). Each work stands in a savepoint of its own.
 """
 
+import math
 import threading
 import time
 from collections import deque
@@ -16,11 +17,19 @@ from typing import Any, TypeVar
 
 from sqlalchemy import Connection, Engine
 
+from study_server.engines import empty_log
+
 GROUP_WORKS = 64
 """The most works in one commit."""
 
 GROUP_S = 0.02
 """After so long a group takes nobody in any more: one slow work holds up only those who are with it already."""
+
+LOG_WAIT_S = 0.05
+"""How long all writers wait for readers that still need the log, so that it can be emptied."""
+
+LOG_AGAIN_S = 1.0
+"""After so long it is tried again: an export of a large study needs the log for minutes."""
 
 T = TypeVar("T")
 
@@ -42,23 +51,31 @@ class Turn:
 
 
 @dataclass(frozen=True)
+class EmptyLog:
+    """Somebody wants that what was deleted is gone from the log too."""
+
+    tried: threading.Event = field(default_factory=threading.Event)
+
+
+@dataclass(frozen=True)
 class Line:
     """Who waits, first come first served; None at its end closes it."""
 
-    waiting: deque[Job | Turn | None] = field(default_factory=deque)
+    waiting: deque[Job | Turn | EmptyLog | None] = field(default_factory=deque)
     somebody: threading.Condition = field(default_factory=threading.Condition)
 
-    def put(self, item: Job | Turn | None) -> None:
+    def put(self, item: Job | Turn | EmptyLog | None) -> None:
         """Somebody more."""
         with self.somebody:
             self.waiting.append(item)
             self.somebody.notify()
 
-    def get(self) -> Job | Turn | None:
-        """The first one, waited for."""
+    def get(self, until: float) -> Job | Turn | EmptyLog | None:
+        """The first one, waited for; at the time `until` (`time.monotonic`) it is the log's turn."""
         with self.somebody:
-            self.somebody.wait_for(lambda: self.waiting)
-            return self.waiting.popleft()
+            wait_s = None if until == math.inf else max(0.0, until - time.monotonic())
+            self.somebody.wait_for(lambda: self.waiting, wait_s)
+            return self.waiting.popleft() if self.waiting and time.monotonic() < until else EmptyLog()
 
     def get_job(self) -> Job | None:
         """The first one if that is a job and there now; a turn stays where it is."""
@@ -107,7 +124,13 @@ class GroupCommit:
             self.holder = None
             turn.ended.set()
 
-    def enter(self, item: Job | Turn) -> None:
+    def empty_log(self) -> None:
+        """What was deleted is gone from SQLite's log when this returns, or else once nobody reads older snapshots."""
+        item = EmptyLog()
+        self.enter(item)
+        item.tried.wait()
+
+    def enter(self, item: Job | Turn | EmptyLog) -> None:
         """A place in the line. `RuntimeError` for who is the writer already and would wait for themselves."""
         with self.lock:
             if threading.get_ident() in (self.holder, self.thread and self.thread.ident):
@@ -132,11 +155,19 @@ class GroupCommit:
 
 
 def write_all(engine: Engine, line: Line) -> None:
-    """The writer's thread: groups of jobs and single turns until the line is closed."""
-    while (item := line.get()) is not None:
+    """The writer's thread: groups of jobs and single turns until the line is closed.
+
+    It empties the log soon after it began, for a process that was killed may have left deletions in it.
+    """
+    again_at = time.monotonic() + LOG_AGAIN_S
+    while (item := line.get(again_at)) is not None:
         if isinstance(item, Turn):
             item.begun.set()
             item.ended.wait()
+        elif isinstance(item, EmptyLog):
+            is_empty = empty_log(engine, LOG_WAIT_S)
+            again_at = math.inf if is_empty else time.monotonic() + LOG_AGAIN_S
+            item.tried.set()
         else:
             commit_group(engine, line, item)
 

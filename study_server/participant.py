@@ -215,8 +215,11 @@ def withdraw(request: Request, site: AtSite, token: Token, fields: Fields) -> Re
         session = find(request, connection, token, lock=True)
         if session is None:
             return sorry(request, 404, STRANGER)
-        if fields.get("sure") == "yes" and session["step"] != "withdrawn":
+        leaves = fields.get("sure") == "yes" and session["step"] != "withdrawn"
+        if leaves:
             sessions.withdraw(connection, session, time.time())
+    if leaves:
+        site.database.empty_log()
     return RedirectResponse(f"/s/{token}", 303)
 
 

@@ -66,8 +66,10 @@ def serve(
             database.close()
             run_workers(listener, workers, settings, **arguments)
         else:
-            uvicorn.Server(uvicorn.Config(app, **settings)).run(sockets=[listener])
-            database.close()
+            try:
+                uvicorn.Server(uvicorn.Config(app, **settings)).run(sockets=[listener])
+            finally:  # who presses Ctrl-C twice does not wait for requests
+                database.close()
 
 
 @contextlib.contextmanager
@@ -114,7 +116,7 @@ def uvicorn_settings(proxies: Sequence[str] = ()) -> dict[str, Any]:
         "proxy_headers": bool(proxies),
         "forwarded_allow_ips": list(proxies),
         "server_header": False,
-        "lifespan": "off",
+        "lifespan": "on",
         "timeout_graceful_shutdown": FINISH_S,
         "timeout_worker_healthcheck": START_S,
     }
