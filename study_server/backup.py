@@ -21,7 +21,7 @@ from sqlalchemy import URL
 
 from fakesss.problem import BadInput
 from study_server.database import chosen_url
-from study_server.engines import BUSY_TIMEOUT_S, parsed_url, sqlite_file
+from study_server.engines import BUSY_TIMEOUT_S, parsed_url, shown_url, sqlite_file
 from study_server.staging import staged
 
 
@@ -32,9 +32,7 @@ def file_name(now: float) -> str:
 
 def no_backup(url: URL) -> str:
     """What to do with PostgreSQL instead, in a sentence with the command: it asks for the password."""
-    query = {name: value for name, value in url.query.items() if name != "password"}
-    open_url = URL.create("postgresql", url.username, None, url.host, url.port, url.database, query)
-    shown = open_url.render_as_string()
+    shown = shown_url(URL.create("postgresql", url.username, None, url.host, url.port, url.database, url.query))
     return f"{shown}: is PostgreSQL's to copy; run: pg_dump --format=custom --file=ratings.dump --dbname={shown}"
 
 

@@ -33,6 +33,21 @@ DRIVERS = {
 }
 """What people write, and the driver we use for it."""
 
+SHOWN = (
+    "host",
+    "hostaddr",
+    "port",
+    "dbname",
+    "user",
+    "service",
+    "passfile",
+    "sslmode",
+    "sslrootcert",
+    "sslcert",
+    "sslkey",
+)
+"""Parameters of libpq that say where a database is; of the others some are passwords."""
+
 FORMS = "write sqlite:///FILE or postgresql://USER@HOST/NAME"
 
 POSTGRESQL = {
@@ -68,7 +83,7 @@ def parsed_url(address: str) -> URL:
 
 def without_password(address: str) -> str:
     """What cannot be read as an address, without what may be a password in it."""
-    return re.sub(r"://.*@", "://...@", address)
+    return re.sub(r"\?.*", "?...", re.sub(r"://.*@", "://...@", address, flags=re.DOTALL), flags=re.DOTALL)
 
 
 def sqlite_url(file: Path) -> str:
@@ -77,19 +92,24 @@ def sqlite_url(file: Path) -> str:
 
 
 def shown_url(address: str | URL) -> str:
-    """`address` fit to be printed: without its password."""
+    """`address` fit to be printed: without a password, in whichever place it stands."""
     url = parsed_url(address) if isinstance(address, str) else address
     if url.drivername == "sqlite" and url.database and not url.query:
         return sqlite_url(Path(url.database))
-    return url.set(query={}).render_as_string(hide_password=True)
+    query = {name: value for name, value in url.query.items() if name in SHOWN}
+    return url.set(query=query).render_as_string(hide_password=True)
 
 
 def sqlite_file(url: URL) -> Path:
     """The file of an SQLite address; `BadInput` if it names none, for in memory every answer would be lost."""
     if url.database in (None, "", ":memory:"):
-        raise BadInput(f"{url}: names no file, so that every answer would be lost at the end; write sqlite:///FILE")
+        raise BadInput(
+            f"{shown_url(url)}: names no file, so that every answer would be lost at the end; write sqlite:///FILE"
+        )
     if url.query:  # among them mode=memory
-        raise BadInput(f"{url}: the address of an SQLite file takes no parameters; write a ? in its name as %3F")
+        raise BadInput(
+            f"{shown_url(url)}: the address of an SQLite file takes no parameters; write a ? in its name as %3F"
+        )
     return Path(str(url.database))
 
 
@@ -151,8 +171,9 @@ def postgresql(url: URL) -> Engine:
             hide_parameters=True,
         )
     except ModuleNotFoundError as error:
-        shown = url.render_as_string(hide_password=True)
-        raise BadInput(f"{shown}: needs {error.name}; install it with: pip install 'fakesss[postgres]'") from None
+        raise BadInput(
+            f"{shown_url(url)}: needs {error.name}; install it with: pip install 'fakesss[postgres]'"
+        ) from None
     event.listen(engine, "connect", prepare_postgresql)
     return engine
 

@@ -139,9 +139,11 @@ def checked_proxies(proxies: Sequence[str]) -> Sequence[str]:
     """`BadInput` unless each is an address or a network: of everybody's word one must not believe any."""
     for proxy in proxies:
         try:
-            ipaddress.ip_network(proxy)
+            network = ipaddress.ip_network(proxy)
         except ValueError as error:
             raise BadInput(f"--proxy {proxy}: {error}; give addresses such as 127.0.0.1 or 10.0.0.0/24") from None
+        if network.prefixlen == 0:
+            raise BadInput(f"--proxy {proxy}: is everybody; give the proxy's own address, such as 127.0.0.1")
     return proxies
 
 
@@ -170,13 +172,4 @@ def address_of(listener: socket.socket) -> str:
 
 def announce(app: FastAPI, host: str, url: str, *, proxies: Sequence[str] = (), workers: int = 1) -> None:
     """Where everything is and what is trusted, on standard error."""
-    words = announcement(app.state.site, url, proxies, workers, is_local=is_loopback(host))
-    print(words, file=sys.stderr, flush=True)
-
-
-def is_loopback(host: str) -> bool:
-    """Whether only this machine can connect."""
-    try:
-        return ipaddress.ip_address(host).is_loopback
-    except ValueError:
-        return host == "localhost"
+    print(announcement(app.state.site, url, host, proxies, workers), file=sys.stderr, flush=True)

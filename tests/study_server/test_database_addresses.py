@@ -70,3 +70,27 @@ def test_every_command_says_so_in_a_sentence(study: Path, command: str, address:
     assert isinstance(result.exception, BadInput)
     assert said.split("write a .")[0] in str(result.exception)
     assert sorted(study.rglob("*")) == before
+
+
+SECRET_PLACES = [
+    "postgresql://u:TOPSECRET@127.0.0.1:1/db",
+    "postgresql://u@127.0.0.1:1/db?password=TOPSECRET",
+    "postgresql://u@127.0.0.1:1/db?sslmode=disable&sslpassword=TOPSECRET",
+    "postgresql://u@127.0.0.1:1/db?pass%77ord=TOPSECRET",
+    "postgresql://u@127.0.0.1:port/db?password=TOPSECRET",
+    "postgresql+asyncpg://u@127.0.0.1/db?password=TOPSECRET",
+    "sqlite:///x.sqlite?password=TOPSECRET",
+]
+
+
+@pytest.mark.parametrize("command", COMMANDS)
+@pytest.mark.parametrize("address", SECRET_PLACES)
+def test_no_command_prints_a_password(study: Path, command: str, address: str) -> None:
+    result = invoked(command, study, address)
+    assert isinstance(result.exception, BadInput)
+    assert "TOPSECRET" not in f"{result.output}{result.exception}"
+
+
+def test_what_says_where_a_database_is_is_shown() -> None:
+    shown = shown_url("postgresql://u@/db?host=/run/postgresql&password=TOPSECRET&sslmode=require")
+    assert shown == "postgresql://u@/db?host=%2Frun%2Fpostgresql&sslmode=require"

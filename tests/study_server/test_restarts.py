@@ -1,5 +1,6 @@
 """Starting and stopping: nobody is lost, and what cannot be served says so in one sentence."""
 
+import socket
 import subprocess
 import sys
 from pathlib import Path
@@ -10,6 +11,7 @@ from study_fixture import write_study
 from survey_client import JSON, Participant
 
 from fakesss.problem import BadInput
+from study_server.announcement import own_addresses
 from study_server.app import admin_secret, create_app
 from study_server.serve import announce, listening, serve, served
 
@@ -47,6 +49,26 @@ def test_what_is_printed_at_the_start(study: Path, capsys: pytest.CaptureFixture
     assert "http://127.0.0.1:8000/admin" in said.err
     assert admin_secret(study) in said.err
     assert ("HTTPS" in said.err) is warns
+
+
+@pytest.mark.parametrize("host", ["0.0.0.0", "::"])
+def test_a_class_is_told_an_address_that_it_can_reach(
+    study: Path, capsys: pytest.CaptureFixture[str], host: str
+) -> None:
+    own = own_addresses(socket.AF_INET)
+    assert all(not address.startswith("127.") for address in own)
+    announce(create_app(study), host, "http://127.0.0.1:8000")
+    said = next(line for line in capsys.readouterr().err.splitlines() if "participants" in line)
+    assert [f"http://{address}:8000/" in said for address in own] == [True] * len(own)
+    assert ("127.0.0.1" in said) is (not own)
+    announce(create_app(study), host, "http://127.0.0.1:8000", proxies=["10.0.0.1"])
+    assert "http://127.0.0.1:8000/\n" in capsys.readouterr().err  # what the proxy asks
+
+
+@pytest.mark.parametrize("proxy", ["0.0.0.0/0", "::/0", "10.0.0.1/8", "proxy.example"])
+def test_everybody_is_no_proxy(study: Path, proxy: str) -> None:
+    with pytest.raises(BadInput, match=f"--proxy {proxy}: .*; give "):
+        serve(study, port=0, proxies=["127.0.0.1", proxy])
 
 
 def test_a_port_that_is_none(study: Path) -> None:
