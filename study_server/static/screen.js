@@ -18,10 +18,15 @@ function offset(at) {
   return (Math.round(at * devicePixelRatio) - at * devicePixelRatio) / devicePixelRatio;
 }
 
-// Width and height in device pixels.
+// Width and height in device pixels. Two fingers enlarge what is laid out: a page that wants to know has to ask.
 export function drawn(image) {
   const { width, height } = image.getBoundingClientRect();
-  return { drawn_width_px: round(width * devicePixelRatio, 2), drawn_height_px: round(height * devicePixelRatio, 2) };
+  const enlarged = devicePixelRatio * pinched();
+  return { drawn_width_px: round(width * enlarged, 2), drawn_height_px: round(height * enlarged, 2) };
+}
+
+function pinched() {
+  return visualViewport?.scale ?? 1;
 }
 
 export function isScaled(image) {
@@ -31,7 +36,7 @@ export function isScaled(image) {
 
 export function screenFacts() {
   // Desktop browsers count page zoom in innerWidth; pinch zoom is the visual viewport's scale.
-  const zoom = (outerWidth / innerWidth || 1) * (visualViewport?.scale ?? 1);
+  const zoom = (outerWidth / innerWidth || 1) * pinched();
   return {
     device_pixel_ratio: devicePixelRatio,
     zoom: round(Math.min(Math.max(zoom, 0.01), 100), 3),
@@ -39,6 +44,16 @@ export function screenFacts() {
     window_height_px: innerHeight,
     gamut: GAMUTS.find((name) => matchMedia(`(color-gamut: ${name})`).matches) ?? "",
   };
+}
+
+// Calls `changed` whenever the device-pixel ratio does: zoom resizes the window, a move to another screen need not.
+export function onPixelRatio(changed) {
+  const media = matchMedia(`(resolution: ${devicePixelRatio}dppx)`);
+  const again = () => {
+    changed();
+    onPixelRatio(changed);
+  };
+  media.addEventListener("change", again, { once: true });
 }
 
 // Resolves with the time stamp of the next frame, before that is painted.

@@ -1,6 +1,7 @@
 // One check of the screen after the other; the last one, or the participant's wish to do without, sends the form.
 // Nothing is compulsory: what was not touched is not sent.
 import { card } from "/static/screen_card.js";
+import { screenFacts } from "/static/screen.js";
 import { match, wedge } from "/static/screen_wedge.js";
 
 const form = document.getElementById("checks");
@@ -81,16 +82,9 @@ function fill(values) {
 
 // What the browser knows of the screen without asking anybody.
 function facts() {
-  const holds = (query) => matchMedia(query).matches;
-  return {
-    width_px: screen.width,
-    height_px: screen.height,
-    window_width_px: innerWidth,
-    window_height_px: innerHeight,
-    device_pixel_ratio: devicePixelRatio,
-    zoom: ((outerWidth / innerWidth || 1) * (visualViewport?.scale ?? 1)).toFixed(3),  // as in screen.js
-    color_depth: screen.colorDepth,
-    gamut: ["rec2020", "p3", "srgb"].find((gamut) => holds(`(color-gamut: ${gamut})`)) ?? "",
-    dynamic_range_high: Number(holds("(dynamic-range: high)")),
-  };
+  const { window_width_px, window_height_px, device_pixel_ratio, zoom, gamut } = screenFacts();
+  const dynamic_range_high = Number(matchMedia("(dynamic-range: high)").matches);
+  const { width: width_px, height: height_px, colorDepth: color_depth } = screen;
+  const sizes = { width_px, height_px, window_width_px, window_height_px };
+  return { ...sizes, device_pixel_ratio, zoom, color_depth, gamut, dynamic_range_high };
 }

@@ -1,5 +1,7 @@
 // Brightness: faint patches on black and white, and grey squares in stripes of black and white. Drawn on canvases with
 // one canvas pixel on one device pixel, at every zoom: a stripe that a browser blurs is no longer black or white.
+import { onPixelRatio } from "/static/screen.js";
+
 const WEDGE_WIDTH = 640;  // CSS px, where there is room
 const WEDGE_HEIGHT = 64;
 const MATCH_SIZE = 200;
@@ -45,14 +47,6 @@ function sharp(canvas, width, height, draw) {
   new ResizeObserver(redraw).observe(room);
   onPixelRatio(redraw);
   return redraw;
-}
-
-// Calls `changed` whenever the device-pixel ratio changes: zoom resizes the window, another monitor need not.
-function onPixelRatio(changed) {
-  matchMedia(`(resolution: ${devicePixelRatio}dppx)`).addEventListener("change", () => {
-    changed();
-    onPixelRatio(changed);
-  }, { once: true });
 }
 
 function fill(paint, value, x, y, width, height) {

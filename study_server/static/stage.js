@@ -1,10 +1,10 @@
 // The place where one picture stands: never a wrong one, and never a shrunk one where the study refuses that.
 import { Damaged, duePicture } from "/static/pictures.js";
-import { drawn, fitToPixels, frame, isScaled, screenFacts } from "/static/screen.js";
+import { drawn, fitToPixels, frame, isScaled, onPixelRatio, screenFacts } from "/static/screen.js";
 
 export class Stage {
   #image = null;
-  #smallest = null; // how it was drawn when it was smallest: what a participant saw is not better than that
+  #worst = null; // how it stood when it was farthest from its file's size: what a participant saw is not better than that
 
   // `place` is the element, `words` the page's; `isShrinkingRefused` as the study says; `covered(bool)` is called when
   // the picture disappears because it does not fit, and when it is back.
@@ -12,9 +12,11 @@ export class Stage {
     Object.assign(this, { place, words, covered });
     this.isShrinkingRefused = false;
     this.notice = paragraph("does-not-fit", words.doesNotFit);
-    window.addEventListener("resize", () => this.#image && this.#fit());
-    document.addEventListener("visibilitychange", () => this.#image && this.#fit());
-    followRatio();
+    const fit = () => this.#image && this.#fit();
+    window.addEventListener("resize", fit);
+    visualViewport?.addEventListener("resize", fit); // two fingers
+    document.addEventListener("visibilitychange", fit);
+    onPixelRatio(fit);
   }
 
   // Put this picture on the page as soon as it is there and can be seen; resolves to its hash.
@@ -26,9 +28,9 @@ export class Stage {
     this.place.replaceChildren(image, this.notice);
     this.place.style.minHeight = "";
     this.#image = image;
-    this.#smallest = null;
+    this.#worst = null;
     this.#fit();
-    while (this.isCovered) await new Promise((resolve) => window.addEventListener("resize", resolve, { once: true }));
+    while (this.isCovered) await frame();
     return image.dataset.sha256;
   }
 
@@ -37,7 +39,7 @@ export class Stage {
   }
 
   display() {
-    return { ...screenFacts(), ...(this.#smallest ?? this.#drawn()) };
+    return this.#worst ?? this.#now();
   }
 
   #fit() {
@@ -47,12 +49,12 @@ export class Stage {
     const isCovered = isScaled(this.#image) && this.isShrinkingRefused;
     this.place.classList.toggle("covered", isCovered);
     this.notice.hidden = !isCovered;
-    this.#noteOncePainted(this.#image, this.#drawn());
+    this.#noteOncePainted(this.#image, this.#now());
     this.covered(isCovered);
   }
 
-  #drawn() {
-    return { ...drawn(this.#image), scaled: isScaled(this.#image) };
+  #now() {
+    return { ...screenFacts(), ...drawn(this.#image), scaled: isScaled(this.#image) };
   }
 
   // A size counts if a frame with it was painted, and somebody could look at it: frames come only while the page is
@@ -61,9 +63,10 @@ export class Stage {
     await frame();
     await frame();
     if (image !== this.#image || this.isCovered || document.visibilityState !== "visible") return;
-    const now = this.#drawn();
+    const now = this.#now();
     if (now.drawn_width_px !== then.drawn_width_px) return; // it is another already, of which `#fit` tells
-    if (!this.#smallest || now.drawn_width_px < this.#smallest.drawn_width_px) this.#smallest = now;
+    const stretched = ({ drawn_width_px }) => Math.abs(Math.log(drawn_width_px / image.naturalWidth));
+    if (!this.#worst || stretched(now) >= stretched(this.#worst)) this.#worst = now;
   }
 
   // The picture, however long it takes; a picture that is not exactly the right one is never shown.
@@ -79,16 +82,6 @@ export class Stage {
       }
     }
   }
-}
-
-// A window that is moved to a screen of another ratio may keep its size: nothing but this tells of it.
-function followRatio() {
-  const media = matchMedia(`(resolution: ${devicePixelRatio}dppx)`);
-  const changed = () => {
-    window.dispatchEvent(new Event("resize"));
-    followRatio();
-  };
-  media.addEventListener("change", changed, { once: true });
 }
 
 function paragraph(id, sentence) {

@@ -1,17 +1,15 @@
 """The picture on screen is the picture rendered, pixel by pixel, or there is none."""
 
 import math
-import sqlite3
 from collections.abc import Callable
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 import pytest
 from playwright.sync_api import Browser, BrowserContext, Page, Route, expect
 from steps import answerable, rate, rows, to_practice, to_trials
 from study_fixture import draw_disc
-from trial_pages import begun, open_trials, saved, short_study, shown_and_rendered
+from trial_pages import begun, displays, open_trials, saved, short_study, shown_and_rendered
 
 from study_server.serve import served
 
@@ -56,16 +54,6 @@ def name_of(zoom: float) -> str:
     return f"at-{zoom:.0%}.test".replace("%", "")
 
 
-def displays(study: Path) -> list[dict[str, Any]]:
-    """How each answered picture stood on the screen, as stored, in the order of the answers."""
-    database = sqlite3.connect(study / "ratings.sqlite")
-    database.row_factory = sqlite3.Row
-    query = "select * from presentations where answered_at is not null order by answered_at"
-    found = [dict(row) for row in database.execute(query)]
-    database.close()
-    return found
-
-
 def test_a_window_moved_to_another_screen_shows_file_pixels_there(page: Page, tmp_path: Path) -> None:
     study = short_study(tmp_path)
     with served(study) as url:
@@ -79,108 +67,6 @@ def test_a_window_moved_to_another_screen_shows_file_pixels_there(page: Page, tm
         saved(page)
     (row,) = displays(study)
     assert (row["device_pixel_ratio"], row["drawn_width_px"], row["scaled"]) == (2, 96, 0)
-
-
-def resize(page: Page, width: int, height: int = 800) -> None:
-    """Make the window so large."""
-    page.set_viewport_size({"width": width, "height": height})
-
-
-def test_a_picture_that_does_not_fit_is_refused_until_it_does(page: Page, tmp_path: Path) -> None:
-    study = short_study(tmp_path, size=400, scaled_pictures="refuse")
-    with served(study) as url:
-        resize(page, 390)
-        page.goto(begun(url))
-        notice = page.get_by_role("alert")
-        expect(notice).to_contain_text("make this window larger")
-        expect(page.locator("#stage img")).to_be_hidden()
-        expect(page.locator(".question").first).to_be_hidden()
-        resize(page, 900)
-        answerable(page, "1 of 6")
-        expect(notice).to_be_hidden()
-        assert np.array_equal(*shown_and_rendered(page, study))
-        resize(page, 390)  # while it is looked at
-        expect(notice).to_be_visible()
-        expect(page.locator("#stage img")).to_be_hidden()
-        page.wait_for_timeout(300)
-        rate(page, "44")  # what cannot be seen is not rated
-        expect(page.locator("#count")).to_have_text("1 of 6")
-        resize(page, 900)
-        expect(page.locator("#stage img")).to_be_visible()
-        page.keyboard.press("Enter")
-        answerable(page, "2 of 6")
-        saved(page)
-    (row,) = displays(study)
-    assert (row["drawn_width_px"], row["drawn_height_px"], row["scaled"]) == (400, 400, 0)
-    assert row["focus_lost_ms"] >= 300
-
-
-def test_a_picture_that_does_not_fit_is_flagged(page: Page, tmp_path: Path) -> None:
-    study = short_study(tmp_path, size=400)
-    with served(study) as url:
-        open_trials(page, url)
-        resize(page, 300)  # shrunk for a while counts as shrunk
-        expect(page.locator("#stage img")).not_to_have_js_property("width", 400)
-        page.evaluate(PAINTED)
-        width = page.locator("#stage img").evaluate("img => img.getBoundingClientRect().width")
-        resize(page, 900)
-        rate(page, "44")
-        saved(page)
-    (row,) = displays(study)
-    assert width < 300
-    assert (row["drawn_width_px"], row["drawn_height_px"]) == pytest.approx((width, width), abs=0.02)
-    assert row["scaled"] == 1
-    assert row["gamut"] in ("srgb", "p3", "rec2020")
-
-
-PAINTED = "new Promise(done => requestAnimationFrame(() => requestAnimationFrame(() => requestAnimationFrame(done))))"
-"""What stands on the page now was on the screen."""
-
-NEVER_LOOKED_AT = {
-    "for less than a frame": """() => {
-        const room = document.querySelector("main");
-        const sized = (width) => {
-            room.style.width = width;
-            dispatchEvent(new Event("resize"));
-        };
-        requestAnimationFrame(() => {
-            sized("150px");
-            requestAnimationFrame(() => sized(""));
-        });
-    }""",
-    "without room": "() => (document.querySelector('main').style.width = '1px', dispatchEvent(new Event('resize')))",
-    "hidden": """() => {
-        Object.defineProperty(document, "visibilityState", { configurable: true, value: "hidden" });
-        document.querySelector("main").style.width = "150px";
-        dispatchEvent(new Event("resize"));
-    }""",
-}
-SEEN_AGAIN = """() => {
-    delete document.visibilityState;
-    document.querySelector("main").style.width = "";
-    document.dispatchEvent(new Event("visibilitychange"));
-}"""
-
-
-@pytest.mark.parametrize("how", NEVER_LOOKED_AT)
-@pytest.mark.parametrize("policy", ["flag", "refuse"])
-def test_a_size_at_which_nobody_looked_is_not_how_it_was_drawn(
-    page: Page, tmp_path: Path, how: str, policy: str
-) -> None:
-    """Chromium passes through a window of 1 x 1 while it resizes: pictures seemed to have been drawn 0 pixels wide."""
-    study = short_study(tmp_path, size=400, scaled_pictures=policy)
-    with served(study) as url:
-        open_trials(page, url)
-        page.evaluate(NEVER_LOOKED_AT[how])
-        page.evaluate(PAINTED)
-        page.evaluate(PAINTED)
-        if how == "without room":
-            assert page.locator("#stage.covered").count() == 0
-        page.evaluate(SEEN_AGAIN)
-        rate(page, "44")
-        saved(page)
-    (row,) = displays(study)
-    assert (row["drawn_width_px"], row["drawn_height_px"], row["scaled"]) == (400, 400, 0)
 
 
 def test_a_picture_changed_on_the_server_is_not_shown(page: Page, browser: Browser, url: str, study: Path) -> None:

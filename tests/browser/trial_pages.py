@@ -2,6 +2,7 @@
 
 import base64
 import io
+import sqlite3
 from pathlib import Path
 from typing import Any
 
@@ -63,3 +64,13 @@ def shown_and_rendered(page: Page, study: Path) -> tuple[Pixels, Pixels]:
     assert (left, top) == pytest.approx((round(left), round(top)), abs=0.05)  # on whole pixels
     height, width = rendered.shape[:2]
     return screen[round(top) : round(top) + height, round(left) : round(left) + width], rendered
+
+
+def displays(study: Path) -> list[dict[str, Any]]:
+    """How each answered picture stood on the screen, as stored, in the order of the answers."""
+    database = sqlite3.connect(study / "ratings.sqlite")
+    database.row_factory = sqlite3.Row
+    query = "select * from presentations where answered_at is not null order by answered_at"
+    found = [dict(row) for row in database.execute(query)]
+    database.close()
+    return found
