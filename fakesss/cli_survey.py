@@ -5,6 +5,7 @@ from pathlib import Path
 import click
 
 from fakesss.cli import AS_JSON, STUDY, commands, done
+from fakesss.problem import BadInput
 
 DATABASE = click.option("--database", metavar="URL", help="Where the ratings are (default: STUDY/ratings.sqlite).")
 
@@ -37,8 +38,9 @@ def forget(study: Path, database: str | None, yes: bool, as_json: bool) -> None:
     """Delete for good what could name the participants of STUDY; their ratings stay.
 
     Names given by a recruiting service, completion codes, comments, answers in free text, network addresses and browser
-    names, the participants' addresses, and the salt of their pseudonyms. The study is closed. Make the export first:
-    afterwards sessions of one person cannot be told to be of one. A running server is to be started anew.
+    names, the participants' addresses, and the salt of their pseudonyms; and STUDY/report, which holds them too and can
+    be written anew. The study is closed. Make the export first: afterwards sessions of one person cannot be told to be
+    of one. Exports and backups made earlier are left to you. A running server is to be started anew.
 
     Example: fakesss forget my-study
     """
@@ -47,7 +49,13 @@ def forget(study: Path, database: str | None, yes: bool, as_json: bool) -> None:
 
     if not yes:
         people = sessions_held(study, database)
-        click.confirm(f"{people} sessions: delete what could name people, for good?", abort=True, err=True)
+        question = f"{people} sessions: delete what could name people, and STUDY/report, for good?"
+        if not click.confirm(question, err=True):
+            raise BadInput(f"{study}: nothing was deleted, as you said")
     result = forget_people(study, database)
-    kept = f"{result['sessions']} sessions name nobody any more; {result['ratings_kept']} ratings are kept"
-    done(result, as_json, f"{kept}\nearlier exports and backups are as they were: see to them too")
+    told = [f"{result['sessions']} sessions name nobody any more; {result['ratings_kept']} ratings are kept"]
+    if result["report_deleted"]:
+        told.append(f"{result['report_deleted']} was deleted; fakesss report {study} writes it anew")
+    left = ", ".join(result["exports_left"]) or "none in the study's folder"
+    told.append(f"earlier exports ({left}) and backups are as they were: see to them too")
+    done(result, as_json, "\n".join(told))

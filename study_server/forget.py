@@ -1,7 +1,8 @@
 """When the time is past for which people were told that their answers are kept: what could name them is deleted.
 
 What stays is what they saw and rated, when, on what display, and which of the offered choices they took about
-themselves. Earlier exports and backups are other files and stay as they are.
+themselves. The report is deleted too, for the tables that it was made of lie in its folder; `fakesss report` writes it
+anew. Earlier exports and backups stay as they are: exports in the study's folder are named.
 """
 
 import contextlib
@@ -15,6 +16,7 @@ from sqlalchemy import Connection, delete, func, insert, select, text, update
 
 from fakesss.problem import BadInput
 from study_server import gates, schema
+from study_server.copies import delete_report, exports_in
 from study_server.database import Database, open_existing
 from study_server.engines import BUSY_TIMEOUT_S
 from study_server.happenings import FORGOTTEN
@@ -37,8 +39,9 @@ def sessions_held(study_folder: Path, database_url: str | None = None) -> int:
 def forget(study_folder: Path, database_url: str | None = None) -> dict[str, Any]:
     """Delete what could name people, close the study, and see to it that the bytes are gone from the files too.
 
-    Of every mode and version of the study in the database. Returns `sessions`, `ratings_kept` and `forgotten_at`.
-    Raises `BadInput` if there is no database, or another program holds it so that old bytes cannot go.
+    Of every mode and version of the study in the database. Returns `sessions`, `ratings_kept`, `forgotten_at`, and the
+    folders `report_deleted` (None: there was none) and `exports_left`. Raises `BadInput` if there is no database,
+    another program holds it so that old bytes cannot go, or the report cannot be deleted.
     """
     database = open_existing(study_folder, database_url)
     now = time.time()
@@ -51,7 +54,14 @@ def forget(study_folder: Path, database_url: str | None = None) -> dict[str, Any
         connection.execute(insert(schema.meta).values(key=FORGOTTEN, value=str(now)))
         ratings = connection.scalar(select(func.count()).select_from(schema.ratings)) or 0
     scrub(database)
-    return {"sessions": sessions, "ratings_kept": ratings, "forgotten_at": now}
+    report = delete_report(study_folder)
+    return {
+        "sessions": sessions,
+        "ratings_kept": ratings,
+        "forgotten_at": now,
+        "report_deleted": str(report) if report else None,
+        "exports_left": [str(folder) for folder in exports_in(study_folder)],
+    }
 
 
 def forget_sessions(connection: Connection) -> int:

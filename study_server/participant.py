@@ -18,6 +18,7 @@ from starlette.concurrency import run_in_threadpool
 from starlette.exceptions import HTTPException
 
 from study_server import answers, pages, sessions, steps
+from study_server.copies import strike_out
 from study_server.gates import gate
 from study_server.rate_limit import retry_after
 from study_server.sessions import Session
@@ -221,6 +222,7 @@ def withdraw(request: Request, site: AtSite, token: Token, fields: Fields) -> Re
     if leaves:
         site.database.empty_log()
     return RedirectResponse(f"/s/{token}", 303)
+        strike_out(site, session["id"])
 
 
 @router.post("/s/{token}/{step}")

@@ -11,6 +11,7 @@ import httpx
 import psycopg
 import pytest
 from click.testing import CliRunner
+from running_survey import until
 from stored import sound
 from study_fixture import write_study
 from survey_client import JSON, Participant
@@ -22,6 +23,7 @@ from study_server import schema
 from study_server.app import admin_secret
 from study_server.database import default_url, open_database, secret
 from study_server.engines import parsed_url
+from study_server.export import export_ratings
 from study_server.forget import forget, scrub_file
 from study_server.serve import served
 
@@ -181,11 +183,49 @@ def test_the_command_asks_first(study: Path) -> None:
     assert isinstance(missing.exception, BadInput) and not (study / "ratings.sqlite").exists()
     with served(study) as url:
         take_part_plainly(url)
-    assert run(commands, ["forget", str(study)], input="n\n").exit_code != 0
+    said_no = run(commands, ["forget", str(study)], input="n\n")
+    assert "nothing was deleted" in str(said_no.exception)
     assert b"5f00aurora42" in bytes_of(study)
     result = run(commands, ["forget", str(study), "--json"], input="y\n")
     assert result.exit_code == 0, result.output
     assert json.loads(result.stdout)["sessions"] == 1
-    assert "1 sessions: delete what could name people, for good?" in result.stderr
+    assert "1 sessions: delete what could name people, and STUDY/report, for good?" in result.stderr
     assert b"5f00aurora42" not in bytes_of(study)
     assert run(commands, ["forget", str(study), "--yes"]).exit_code == 0
+
+
+def copies_of(study: Path) -> list[Path]:
+    """The report's tables as they lie in the study's folder, and an export."""
+    folders = [study / "report" / "data", study / "report" / "pilot" / "data", study / "export"]
+    for folder in folders:
+        export_ratings(study, folder)
+    (study / "report" / "index.html").write_text("what people said")
+    return folders
+
+
+def test_the_report_goes_and_exports_are_named(tmp_path: Path) -> None:
+    study = write_study(tmp_path / "study", survey=SURVEY)
+    with served(study) as url:
+        take_part(url)
+    copies_of(study)
+    said = CliRunner().invoke(commands, ["forget", str(study), "--yes"]).output
+    assert f"{study / 'report'} was deleted; fakesss report {study} writes it anew" in " ".join(said.splitlines())
+    assert str(study / "export") in said and not (study / "report").exists()
+    holding = [path for path in study.rglob("*") if path.is_file() and b"my dog Perseus" in path.read_bytes()]
+    assert holding == [study / "export" / "participants.csv"]
+
+
+def test_who_withdraws_goes_from_the_reports_tables_too(tmp_path: Path) -> None:
+    study = write_study(tmp_path / "study", survey=SURVEY)
+    with served(study) as url:
+        person, stays = take_part(url), Participant(url, "?PROLIFIC_PID=another&STUDY_ID=64borealis").consent()
+        tables = copies_of(study)[:2]
+        session = person.state["session"]
+        holding = [path for table in tables for path in table.glob("*.csv") if session in path.read_text()]
+        assert {path.name for path in holding} >= {"participants.csv", "ratings.csv", "events.csv"}
+        person.client.post(f"{person.here}/withdraw", json={"sure": "yes"})
+        until(lambda: not any(session in path.read_text() for path in holding))
+    for table in tables:
+        left = (table / "participants.csv").read_text()
+        assert stays.state["session"] in left and "Perseus" not in left
+        assert len((table / "codebook.csv").read_text()) > 1000
