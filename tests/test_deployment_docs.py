@@ -2,7 +2,9 @@
 
 import re
 import shlex
+import tomllib
 from collections.abc import Iterator
+from ipaddress import ip_address, ip_network
 from pathlib import Path
 
 import click
@@ -98,7 +100,7 @@ def test_service_and_proxies_agree() -> None:
     serve = check(shlex.split(started[1])).params
     address = f"{serve['host']}:{serve['port']}"
     assert f"proxy_pass http://{address};" in file("nginx.conf")
-    assert f"reverse_proxy {address}" in file("Caddyfile")
+    assert f"reverse_proxy {{$SURVEY_ADDRESS:{address}}}" in file("Caddyfile")
     assert "127.0.0.1" in str(serve["proxy"])
     assert f"ReadWritePaths={serve['study']}\n" in file("fakesss.service")
     for name in ("nginx.conf", "Caddyfile"):
@@ -108,12 +110,14 @@ def test_service_and_proxies_agree() -> None:
     assert f"{SECRET_VARIABLE}=" in file("fakesss.service")
     stop = re.search(r"TimeoutStopSec=(\d+)", file("fakesss.service"))
     assert stop and int(stop[1]) > FINISH_S
+    assert "RestartPreventExitStatus=2\n" in file("fakesss.service")  # bad input stays bad
 
 
 def test_proxies_pass_what_the_server_asks_for() -> None:
     nginx, caddy = file("nginx.conf"), file("Caddyfile")
     for line in ("Host $http_host;", "X-Forwarded-For $remote_addr;", "X-Forwarded-Proto $scheme;"):
         assert f"proxy_set_header {line}" in nginx
+    assert nginx.count("error_log /var/log/nginx/fakesss.log crit;") == nginx.count("server {")
     assert nginx.count("access_log off;") == nginx.count("server {") == 2
     assert f"client_max_body_size {web_safety.BODY_LIMIT // 1024}k;" in nginx
     assert f"max_size {web_safety.BODY_LIMIT // 1024}KiB" in caddy
@@ -135,11 +139,27 @@ def test_the_containers_agree() -> None:
     assert serve["study"] == Path("/study") or serve["study"] == "/study"
     assert "VOLUME /study\n" in container
     assert container.index("USER fakesss") < container.index("ENTRYPOINT")
-    assert compose["networks"]["default"]["ipam"]["config"][0]["subnet"] in str(serve["proxy"])
+    proxy = compose["services"]["proxy"]
+    assert serve["proxy"] == proxy["networks"]["default"]["ipv4_address"]  # and nobody else on that network
+    (network,) = compose["networks"]["default"]["ipam"]["config"]
+    assert ip_address(serve["proxy"]) in ip_network(network["subnet"])
+    assert proxy["environment"] == {"SURVEY_ADDRESS": f"survey:{serve['port']}"}
     assert "ports" not in survey  # the proxy alone is reached from outside
     database = compose["services"]["database"]["environment"]
     assert f"postgresql://{database['POSTGRES_USER']}@database/{database['POSTGRES_DB']}" == serve["database"]
     assert SECRET_VARIABLE in survey["environment"]
+
+
+def test_the_image_holds_the_program_and_nothing_else() -> None:
+    """What the build may copy: everything is left out first, then the program's own is let in."""
+    root = DOCS.parent
+    lines = [line for line in (root / ".dockerignore").read_text().splitlines() if not line.startswith("#")]
+    let_in = {line[1:] for line in lines if line.startswith("!")}
+    assert lines[0] == "*" and "**/__pycache__" in lines
+    project = tomllib.loads((root / "pyproject.toml").read_text())
+    packages = {name.partition(".")[0] for name in project["tool"]["setuptools"]["packages"]}
+    files = {"pyproject.toml", "constraints.txt", project["project"]["readme"], *project["project"]["license-files"]}
+    assert let_in == packages | files
 
 
 def test_numbers_are_those_of_the_program() -> None:
