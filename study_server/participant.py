@@ -26,6 +26,9 @@ from study_server.site import AtSite, Fields, Site, answer, sorry, told, visitor
 from study_server.texts import N_
 from study_server.tokens import External, belongs_to, is_valid, make_token
 
+MOST_REFUSALS = 100
+"""Of one session that are noted: whoever sends nonsense for ever does not fill the disk with it."""
+
 log = logging.getLogger(__name__)
 
 router = APIRouter()
@@ -99,7 +102,8 @@ def session_page(
 ) -> dict[str, Any]:
     """Where this session stands, `waiting` for its next presentations; a closed study ends it for who is under way."""
     if is_shut_out(site, connection, session):
-        return pages.shut_page(site.study, session["mode"], session["token"], session["language"], "closed")
+        data = pages.shut_page(site.study, session["mode"], session["token"], session["language"], "closed")
+        return data | {"session": session["id"]}
     return pages.page(connection, site.study, session, waiting)
 
 
@@ -221,8 +225,8 @@ def withdraw(request: Request, site: AtSite, token: Token, fields: Fields) -> Re
             sessions.withdraw(connection, session, time.time())
     if leaves:
         site.database.empty_log()
-    return RedirectResponse(f"/s/{token}", 303)
         strike_out(site, session["id"])
+    return RedirectResponse(f"/s/{token}", 303)
 
 
 @router.post("/s/{token}/{step}")
@@ -264,6 +268,8 @@ def note_refusal(site: Site, token: str, sent: answers.Posted, refused: answers.
     """A refused answer leaves an event, so that the researcher sees that something was wrong with it."""
     with site.database.writing() as connection:
         session = sessions.find(connection, token)
-        if session is not None and session["step"] != "withdrawn":
+        if session is None or session["step"] == "withdrawn":
+            return
+        if sessions.noted(connection, session["id"], "refused") < MOST_REFUSALS:
             detail = {"place": sent.place, "stimulus_sha256": sent.stimulus_sha256, "because": str(refused)}
             sessions.record(connection, session["id"], now, "refused", detail)

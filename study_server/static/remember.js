@@ -2,16 +2,18 @@
 // computer begins anew. Where storage is blocked nothing is lost but the offer.
 const key = "fakesss-session";
 const here = location.pathname;
+const isNamed = new URLSearchParams(location.search).has("PROLIFIC_PID"); // their link always leads to their own session
 const notice = document.getElementById("resume");
 
 try {
   const earlier = localStorage.getItem(key);
-  if (document.querySelector("[data-done]")) localStorage.removeItem(key);
-  else if (notice && earlier && earlier !== here && (await begun(earlier))) {
+  if (document.querySelector("[data-over]")) {
+    if (earlier === here) localStorage.removeItem(key);
+  } else if (notice && !isNamed && earlier && earlier !== here && (await begun(earlier))) {
     notice.querySelector("a").href = earlier;
     notice.hidden = false;
   }
-  document.querySelector("form")?.addEventListener("submit", () => localStorage.setItem(key, here));
+  if (!isNamed) document.querySelector(".agree")?.addEventListener("submit", () => localStorage.setItem(key, here));
 } catch {
   // storage is blocked
 }
