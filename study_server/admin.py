@@ -8,7 +8,7 @@ from fastapi.responses import JSONResponse, RedirectResponse
 from sqlalchemy import Connection
 
 from study_server import counts, gates, happenings
-from study_server.admin_door import COOKIE, COOKIE_S, Locked, Unlocked, cookie_value, is_secret
+from study_server.admin_door import COOKIE_S, Locked, Unlocked, cookie_name, cookie_value, is_secret
 from study_server.downloads import router as downloads
 from study_server.export import ROWS
 from study_server.gates import Gate
@@ -45,17 +45,25 @@ def login(request: Request, site: AtSite, fields: Fields) -> Response:
         return answer(request, "login.html", data, 401)
     response = RedirectResponse("/admin", 303)
     secure = request.url.scheme == "https"
-    value = cookie_value(site, time.time())
-    response.set_cookie(COOKIE, value, max_age=COOKIE_S, path="/admin", httponly=True, samesite="strict", secure=secure)
+    name, value = cookie_name(site), cookie_value(site, time.time())
+    response.set_cookie(name, value, max_age=COOKIE_S, path="/admin", httponly=True, samesite="strict", secure=secure)
     return response
 
 
 @router.post("/logout")
-def logout() -> Response:
+def logout(site: AtSite) -> Response:
     """Closes the door again."""
     response = RedirectResponse("/admin", 303)
-    response.delete_cookie(COOKIE, path="/admin")
+    response.delete_cookie(cookie_name(site), path="/admin")
     return response
+
+
+@router.get("/login", include_in_schema=False)
+@router.get("/logout", include_in_schema=False)
+@router.get("/gate", include_in_schema=False)
+def back() -> Response:
+    """Somebody opens the address of a form, as by Enter in the address bar: to the page, or its door."""
+    return RedirectResponse("/admin", 303)
 
 
 @router.get("")

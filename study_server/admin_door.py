@@ -4,6 +4,7 @@ The secret is compared before guesses are counted, for otherwise anybody could l
 That leaves its length as what guessing fails on, so that a short one is refused at the start.
 """
 
+import hashlib
 import hmac
 import time
 from typing import Annotated
@@ -12,7 +13,6 @@ from fastapi import Depends, Request
 
 from study_server.site import AtSite, Site
 
-COOKIE = "fakesss_admin"
 COOKIE_S = 12 * 3600
 SHORTEST_SECRET = 16
 """Characters of a secret that is given by the environment."""
@@ -21,6 +21,11 @@ SHORTEST_SECRET = 16
 def is_secret(site: Site, given: str) -> bool:
     """Whether `given` is the admin secret, in a time that tells nothing about how much of it is right."""
     return hmac.compare_digest(given.encode(), site.admin_secret.encode())
+
+
+def cookie_name(site: Site) -> str:
+    """Of this database and mode: cookies are sent to every port of a host, and a pilot may run beside the study."""
+    return f"fakesss_admin_{hashlib.sha256(site.signing_key.encode()).hexdigest()[:8]}"
 
 
 def cookie_value(site: Site, now: float) -> str:
@@ -37,7 +42,7 @@ def signature(site: Site, until: str) -> str:
 
 def is_admin(request: Request, site: Site) -> bool:
     """Whether this request carries a valid cookie, or the secret as a bearer token."""
-    until, _, signed = request.cookies.get(COOKIE, "").partition(".")
+    until, _, signed = request.cookies.get(cookie_name(site), "").partition(".")
     if signed and hmac.compare_digest(signed.encode(), signature(site, until).encode()):
         return time.time() < int(until)
     scheme, _, given = request.headers.get("authorization", "").partition(" ")

@@ -22,7 +22,7 @@ from study_server.engines import shown_url
 from study_server.gates import gate
 from study_server.manifest import load_study, study_changed
 from study_server.openapi import described
-from study_server.site import HERE, AtSite, Mode, Reporter, Site, sorry
+from study_server.site import HERE, AtSite, Mode, Reporter, Site, site_of, sorry
 from study_server.texts import N_
 from study_server.web_safety import WebSafety
 
@@ -128,7 +128,7 @@ def given_secret() -> str:
 
 def health(site: AtSite) -> Response:
     """200 if a rating could be brought to disk now, else 503."""
-    if is_writable(site.database):
+    if site.health.is_well(site.database):
         with site.database.reading() as connection:
             standing = gate(connection, site.study.identity, site.mode)
         facts = {"status": "ok", "study": site.study.title, "identity": site.study.identity, "mode": site.mode}
@@ -138,6 +138,7 @@ def health(site: AtSite) -> Response:
 
 def not_saved(request: Request, error: Exception) -> Response:
     """The database failed: nothing was stored, and the browser is to try again."""
+    site_of(request).health.doubt()
     log.error("the database failed: %s", reason(error) if isinstance(error, DatabaseError) else error)
     return sorry(request, 503, N_("This could not be saved just now; please try again in a moment."))
 

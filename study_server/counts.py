@@ -115,7 +115,7 @@ def overview(connection: Connection, study: str, mode: str, now: float, release_
         **{name: sums[name] for name in SUMS},
         **recent_ratings(connection, study, mode, now),
         "median_minutes": round(median(durations_s) / 60, 1) if durations_s else None,
-        "steps": [{"step": step, "people": steps[step]} for step in UNDER_WAY if step in steps],
+        "steps": [{"step": step, "people": steps[step]} for step in UNDER_WAY if steps[step]],
         "dropped_at": [{"trials": t, "people": dropped[t]} for t in range(len(trials))],
         "rows": [{"row": row + 1, "people": held[row]} for row in rows],
         "balance": balance([held[row] for row in rows]),

@@ -1,6 +1,7 @@
 """Engines for the two databases we know, set so that a commit means: on disk, and nobody waits for ever."""
 
 import contextlib
+import os
 import re
 import sqlite3
 from pathlib import Path
@@ -119,9 +120,16 @@ def sqlite(url: URL) -> Engine:
     engine = create_engine(
         url, connect_args={"timeout": BUSY_TIMEOUT_S}, pool_size=20, max_overflow=40, hide_parameters=True
     )
+    event.listen(engine, "do_connect", make_private)
     event.listen(engine, "connect", prepare_sqlite)
     event.listen(engine, "begin", begin_sqlite)
     return engine
+
+
+def make_private(_dialect: Any, _record: Any, arguments: Any, _named: Any) -> None:
+    """A new file is its owner's alone, whatever the umask; SQLite makes the -wal and -shm beside it like it."""
+    with contextlib.suppress(OSError):  # it is there already, or SQLite will say what is wrong
+        os.close(os.open(arguments[0], os.O_CREAT | os.O_EXCL | os.O_WRONLY, 0o600))
 
 
 def prepare_sqlite(connection: Any, _record: Any) -> None:

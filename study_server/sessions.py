@@ -193,6 +193,13 @@ def record(connection: Connection, session: str, now: float, kind: str, detail: 
     connection.execute(insert(schema.events).values(session=session, at=now, kind=kind, detail=dict(detail)))
 
 
+def noted(connection: Connection, session: str, kind: str) -> int:
+    """How many events of this kind the session has."""
+    event = schema.events.c
+    mine = select(func.count()).select_from(schema.events).where(event.session == session, event.kind == kind)
+    return connection.scalar(mine) or 0
+
+
 def unanswered(connection: Connection, session: str, limit: int) -> Sequence[RowMapping]:
     """The next `limit` presentations that still wait for their ratings; the first is where the participant is."""
     return connection.execute(WAITING, {"session": session, "most": limit}).mappings().all()
@@ -219,7 +226,7 @@ def withdraw(connection: Connection, session: RowMapping, now: float) -> None:
     code, which says at the recruiting service who it was. An external person who returns is still known, for their
     token follows from their name.
     """
-    deleted = 0
+    _, deleted = expected_and_stored(connection, session["id"])
     for table in (schema.revisions, schema.ratings, schema.events):
         gone = connection.execute(table.delete().where(table.c.session == session["id"]))
         deleted += gone.rowcount if table is schema.ratings else 0

@@ -11,6 +11,7 @@ from fastapi.responses import JSONResponse
 from starlette.exceptions import HTTPException
 
 from study_server.database import Database
+from study_server.health import Health
 from study_server.language import catalogue, negotiated, words
 from study_server.manifest import BuiltStudy
 from study_server.rate_limit import Limits
@@ -52,6 +53,7 @@ class Site:
     reporter: Reporter | None = None
     throttle: Throttle = field(default_factory=Throttle)
     limits: Limits = field(default_factory=Limits)
+    health: Health = field(default_factory=Health)
 
 
 def site_of(request: Request) -> Site:

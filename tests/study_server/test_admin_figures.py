@@ -97,7 +97,7 @@ def test_refusals_and_withdrawals_are_told(study: Path, url: str) -> None:
     page = httpx.get(f"{url}/admin", headers={**JSON, **headers}).json()
     (refused,) = page["refusals"]
     assert refused["session"] == person.state["session"] and "not the one that belongs here" in refused["because"]
-    assert [row["ratings_deleted"] for row in page["withdrawals"]] == [4]
+    assert [row["ratings_deleted"] for row in page["withdrawals"]] == [2]  # of real trials, as "ratings"
     assert "not the one that belongs here" in httpx.get(f"{url}/admin", headers=headers).text
     assert person.here.removeprefix("/s/") not in httpx.get(f"{url}/admin", headers=headers).text
 
@@ -116,3 +116,15 @@ def test_a_page_without_anybody(tmp_path: Path, database_url: str, mode: Any) ->
         assert (page["started"], page["ratings"], page["median_minutes"]) == (0, 0, None)
         assert page["gate"] == {"state": "open", "meaning": "People can start, and go on.", "history": []}
         assert "Nobody is under way." in httpx.get(f"{url}/admin", headers=headers).text
+
+
+def test_only_steps_where_somebody_is_under_way(study: Path, url: str) -> None:
+    """Who sits at the comments has given every rating, and counts as finished."""
+    person = Participant(url).to_trials()
+    while person.state["step"] != "comments":
+        person.rate()
+    Participant(url).to_trials()
+    headers = {**JSON, "Authorization": f"Bearer {admin_secret(study)}"}
+    page = httpx.get(f"{url}/admin", headers=headers).json()
+    assert (page["finished"], page["active"]) == (1, 1)
+    assert page["steps"] == [{"step": "trials", "people": 1}]

@@ -40,17 +40,20 @@ def test_the_cookie_opens_and_a_forged_one_does_not(url: str, study: Path) -> No
         assert "httponly" in cookie
         assert "samesite=strict" in cookie
         assert browser.get("/admin").status_code == 200
-        value = browser.cookies["fakesss_admin"]
+        ((name, value),) = browser.cookies.items()
     until, signed = value.split(".")
     for forged in (f"{int(until) + 1}.{signed}", f"{until}.{signed[:-1]}", "x.y", "."):
-        assert httpx.get(f"{url}/admin", headers={"Cookie": f"fakesss_admin={forged}"}).status_code == 401
+        assert httpx.get(f"{url}/admin", headers={"Cookie": f"{name}={forged}"}).status_code == 401
 
 
 def test_logging_out_and_in_is_by_post_from_our_own_pages(url: str, study: Path) -> None:
     secret = admin_secret(study)
     with httpx.Client(base_url=url) as browser:
         browser.post("/admin/login", data={"secret": secret})
-        assert browser.get("/admin/logout").status_code == 405
+        for path in ("logout", "login", "gate"):  # as by Enter in the address bar: to the page, and nothing happens
+            reply = browser.get(f"/admin/{path}")
+            assert (reply.status_code, reply.headers["location"]) == (303, "/admin")
+        assert browser.get("/admin").status_code == 200
         foreign = {"Origin": "https://elsewhere.example"}
         for path, fields in (("logout", {}), ("login", {"secret": secret}), ("gate", {"state": "closed"})):
             assert browser.post(f"/admin/{path}", data=fields, headers=foreign).status_code == 403
@@ -159,3 +162,18 @@ def test_a_report_that_cannot_be_made_says_why(study: Path) -> None:
         Participant(url).to_trials().rate()
         headers = {**JSON, "Authorization": f"Bearer {admin_secret(study)}"}
         assert httpx.get(f"{url}/admin/report/", headers=headers).json()["error"] == "ratings: too few people"
+
+
+def test_two_servers_on_one_host_leave_each_others_researcher_in(study: Path, url: str) -> None:
+    """A pilot beside the study, on another port: browsers send cookies of a host to all its ports."""
+    with served(study, mode="pilot") as pilot, httpx.Client() as browser:
+        for address in (url, pilot):
+            assert browser.post(f"{address}/admin/login", data={"secret": admin_secret(study)}).status_code == 303
+        assert [browser.get(f"{address}/admin").status_code for address in (url, pilot)] == [200, 200]
+        browser.post(f"{pilot}/admin/logout")
+        assert [browser.get(f"{address}/admin").status_code for address in (url, pilot)] == [200, 401]
+
+
+def test_the_door_says_where_the_secret_is(url: str) -> None:
+    page = httpx.get(f"{url}/admin").text
+    assert "prints it when it starts, unless it was given by <code>FAKESSS_ADMIN_SECRET</code>" in page

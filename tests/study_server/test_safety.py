@@ -1,16 +1,22 @@
 """What the web may bring: other sites, huge bodies, text that looks like HTML, a disk that is full."""
 
+import contextlib
+import os
+import sqlite3
+import time
 from collections.abc import Callable
 from pathlib import Path
 
 import httpx
 import pytest
+from running_survey import until
 from sqlalchemy import Connection, event
 from study_fixture import write_study
 from survey_client import JSON, Participant
 
 from study_server import schema
 from study_server.app import create_app
+from study_server.health import REMEMBERED_S
 from study_server.serve import running, served
 from study_server.web_safety import BODY_LIMIT, TooLarge
 
@@ -106,4 +112,59 @@ def test_health_turns_red_when_nothing_can_be_written(study: Path, url: str) -> 
     with app.state.site.database.writing() as connection:
         schema.meta.drop(connection)
     app.state.site.database.engine.dispose()
-    assert httpx.get(f"{url}/health").status_code == 503
+    until(lambda: httpx.get(f"{url}/health").status_code == 503, 10 * REMEMBERED_S)
+
+
+def test_asking_for_health_over_and_over_writes_once_a_second(study: Path) -> None:
+    app = create_app(study)
+    writes: list[str] = []
+    with running(app) as url, httpx.Client(base_url=url) as client:
+        event.listen(app.state.site.database.engine, "commit", lambda _: writes.append("commit"))
+        before = time.monotonic()
+        asked = [client.get("/health").status_code for _ in range(100)]
+        took_s = time.monotonic() - before
+        assert asked == [200] * 100
+        assert len(writes) <= 1 + took_s / REMEMBERED_S
+        app.state.site.health.doubt()  # as a save that failed does
+        written = len(writes)
+        client.get("/health")
+        assert len(writes) == written + 1
+
+
+def test_a_save_that_failed_turns_health_red_at_once(study: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr("study_server.health.REMEMBERED_S", 3600)
+    app = create_app(study)
+    with running(app) as url, httpx.Client(base_url=url, headers=JSON) as client:
+        person = Participant(url).to_trials()
+        assert client.get("/health").status_code == 200
+
+        @event.listens_for(app.state.site.database.engine, "begin")
+        def limit(connection: Connection) -> None:
+            connection.exec_driver_sql("PRAGMA query_only = ON")
+
+        assert client.get("/health").status_code == 200  # remembered
+        assert person.send(person.answers(4)).status_code == 503
+        assert client.get("/health").status_code == 503
+
+
+def test_new_files_are_their_owners_alone(study: Path) -> None:
+    """Whatever the umask: the database holds secrets and what people said."""
+    umask = os.umask(0)
+    try:
+        with served(study) as url:
+            Participant(url).consent()
+            files = sorted(study.glob("ratings.sqlite*"))
+            assert [path.suffix for path in files] == [".sqlite", ".sqlite-shm", ".sqlite-wal"]
+            assert {oct(path.stat().st_mode & 0o777) for path in files} == {"0o600"}
+    finally:
+        os.umask(umask)
+
+
+def test_one_session_leaves_only_so_many_refusals(study: Path, url: str, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr("study_server.participant.MOST_REFUSALS", 3)
+    person = Participant(url).to_trials()
+    for _ in range(5):
+        assert person.send(person.answers(stimulus_sha256="0" * 64)).status_code == 409
+    with contextlib.closing(sqlite3.connect(study / "ratings.sqlite")) as database:
+        assert database.execute("SELECT count(*) FROM events WHERE kind = 'refused'").fetchone() == (3,)
+    person.rate()
