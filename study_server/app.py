@@ -17,7 +17,7 @@ from fakesss.problem import BadInput
 from study_server import admin, participant, pictures, plates
 from study_server.admin_door import SHORTEST_SECRET
 from study_server.adoption import adopt_study
-from study_server.database import chosen_url, is_writable, open_database, open_existing, reason, secret
+from study_server.database import chosen_url, open_database, open_existing, reason, secret
 from study_server.engines import shown_url
 from study_server.gates import gate
 from study_server.manifest import load_study, study_changed
