@@ -27,7 +27,11 @@ def admin(page: Page, study: Path, url: str) -> Page:
     return page
 
 
-def later(page: Page, ms: int = POLL_MS) -> None:
+SLOW_MS = 30_000
+"""The same where answers take up to 1.5 s: the page then waits twenty times as long as the last one took."""
+
+
+def later(page: Page, ms: int = SLOW_MS) -> None:
     """So long afterwards by the page's clock, once what it asked for by then is there."""
     with page.expect_response(lambda response: response.url.endswith("/admin")):
         page.clock.fast_forward(ms)
