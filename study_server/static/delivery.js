@@ -36,9 +36,12 @@ export class Delivery {
     for (let failures = 0; !this.#isOver; ) {
       const answer = this.sendable;
       if (!answer && this.page && !this.isStale) return;
+      const wasStale = this.isStale;
+      this.isStale = false; // what another tab brings from here on may come after this reply was made
       const reply = await (answer ? this.#alone(() => this.#post(answer, failures)) : askWhere(this.here, failures));
       this.isFailing = "after" in reply;
-      if (!this.isFailing) this.#take(answer, reply);
+      if (this.isFailing) this.isStale ||= wasStale;
+      else this.#take(answer, reply);
       this.heard();
       failures = this.isFailing ? failures + 1 : 0;
       if (this.isFailing) await pause(failures, reply.after);
@@ -46,20 +49,21 @@ export class Delivery {
   }
 
   // Another tab may have sent it while this one waited for its turn.
-  #post(answer, failures) {
-    return this.outbox.has(answer) ? send(this.here, answer, failures) : { page: null };
+  async #post(answer, failures) {
+    if (!this.outbox.has(answer)) return { page: null };
+    const reply = await send(this.here, answer, failures);
+    if (reply.page) this.outbox.remove(answer); // before the next tab's turn
+    return reply;
   }
 
   #take(answer, { page = null, refused }) {
-    if (answer && refused === undefined) this.outbox.remove(answer);
-    else if (answer) this.#doubted = { answer, sentence: refused };
-    else if (refused === undefined) this.#judge(page);
-    else {
+    if (refused === undefined && !answer) this.#judge(page);
+    else if (refused !== undefined && answer) this.#doubted = { answer, sentence: refused };
+    else if (refused !== undefined) {
       this.#isOver = true;
       this.lost();
     }
     this.page = page;
-    this.isStale = false;
   }
 
   // A refused answer is given up if it was its turn. If the server is behind it (restored from a backup, say), it waits.

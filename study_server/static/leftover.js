@@ -2,10 +2,13 @@
 // or another tab had gone on. Nothing is left behind on the computer of somebody who is through or has withdrawn.
 import { Outbox } from "/static/outbox.js";
 import { pause, send } from "/static/sending.js";
+import { forgetShowing } from "/static/showing.js";
 
 const here = location.pathname;
 const step = document.body.className;
 const outbox = new Outbox(here, () => {});
+
+if (step === "done" || step === "withdrawn") forgetShowing(here);
 
 for (const answer of outbox.answers()) {
   const isKnown = step === "withdrawn" || (await isAnswered(answer));

@@ -51,7 +51,8 @@ export class Outbox {
   #stored() {
     const keys = attempt(() => Object.keys(localStorage)) ?? [];
     const ours = keys.filter((key) => key.startsWith(this.#prefix));
-    return ours.map((key) => [key, attempt(() => JSON.parse(localStorage.getItem(key)))]).filter(([, entry]) => entry?.answer);
+    const entries = ours.map((key) => [key, attempt(() => JSON.parse(localStorage.getItem(key)))]);
+    return entries.filter(([key, entry]) => entry?.answer && key === this.#key(entry.answer)); // others are not ours
   }
 
   #store() {

@@ -88,17 +88,29 @@ export class Stopwatch {
   }
 
   // Frames come only while the page is visible. The first callback runs before the frame with the picture is painted;
-  // the second one's time stamp is the first moment at which it surely is on screen.
-  async start() {
+  // the second one's time stamp is the first moment at which it surely is on screen. `earlier` {shownAt, away, seenUntil},
+  // ms since 1970: the same picture before this page was loaded anew. It goes on, and the time between was away.
+  async start(earlier) {
     await frame();
-    this.shownAt = await frame();
+    const now = await frame();
+    this.shownAt = now;
     this.away = 0;
+    if (earlier) {
+      this.shownAt -= Math.max(Date.now() - earlier.shownAt, 0);
+      this.away = earlier.away + Math.max(Date.now() - earlier.seenUntil, 0);
+    }
     this.awaySince = null;
     this.look();
   }
 
-  elapsed() {
-    return limited(performance.now() - this.shownAt);
+  // What `start` needs to go on after the page was loaded anew.
+  kept() {
+    return { shownAt: Date.now() - this.elapsed(), away: this.lost(), seenUntil: Date.now() };
+  }
+
+  // Until the page's time `at`.
+  elapsed(at = performance.now()) {
+    return limited(at - this.shownAt);
   }
 
   lost() {

@@ -49,9 +49,11 @@ function retryAfter(response) {
 export async function pause(failures, after) {
   const wait = Math.min(250 * 2 ** failures, LONGEST_WAIT_MS) * (0.75 + Math.random() / 2);
   const asked = new Promise((resolve) => setTimeout(resolve, after));
+  const over = new AbortController();
   await new Promise((resolve) => {
     setTimeout(resolve, wait);
-    window.addEventListener("online", resolve, { once: true });
+    window.addEventListener("online", resolve, { signal: over.signal });
   });
+  over.abort();
   await asked;
 }

@@ -2,6 +2,8 @@
 import { Damaged, duePicture } from "/static/pictures.js";
 import { drawn, fitToPixels, frame, isScaled, onPixelRatio, screenFacts } from "/static/screen.js";
 
+const LATE_MS = 300; // from here on the picture before would be taken for the one that is counted
+
 export class Stage {
   #image = null;
   #worst = null; // how it stood when it was farthest from its file's size: what a participant saw is not better than that
@@ -23,7 +25,8 @@ export class Stage {
   async show(facts) {
     this.#image = null;
     this.place.style.minHeight = `${facts.height / devicePixelRatio}px`; // words take the picture's place
-    const image = await this.#undamaged(facts);
+    const isLate = setTimeout(() => this.place.replaceChildren(this.#loading()), LATE_MS);
+    const image = await this.#undamaged(facts, isLate);
     image.alt = this.words.alt;
     this.place.replaceChildren(image, this.notice);
     this.place.style.minHeight = "";
@@ -69,11 +72,15 @@ export class Stage {
     if (!this.#worst || stretched(now) >= stretched(this.#worst)) this.#worst = now;
   }
 
+  #loading() {
+    return Object.assign(document.createElement("p"), { id: "waiting", textContent: this.words.loading });
+  }
+
   // The picture, however long it takes; a picture that is not exactly the right one is never shown.
-  async #undamaged(facts) {
+  async #undamaged(facts, isLate) {
     for (let attempt = 1; ; attempt++) {
       try {
-        return await duePicture(facts);
+        return await duePicture(facts).finally(() => clearTimeout(isLate));
       } catch (error) {
         const sentence = error instanceof Damaged ? this.words.damaged : this.words.unloaded;
         const notice = paragraph("waiting", attempt > 4 ? `${sentence} ${this.words.tellUs}` : sentence);

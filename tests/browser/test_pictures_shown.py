@@ -129,14 +129,14 @@ def forge(route: Route) -> None:
     route.continue_(post_data=body)
 
 
-@pytest.mark.parametrize("length", [0, 1, 55, 56, 63, 64, 65, 1000, 100_003])
+@pytest.mark.parametrize("length", [0, 1, 55, 56, 63, 64, 65, 1000, 300_003])
 def test_our_own_sha256_is_sha256(page: Page, url: str, length: int) -> None:
     page.goto(url)
     program = """async (length) => {
         const { plainSha256 } = await import("/static/sha256.js");
         const data = Uint8Array.from({ length }, (_, i) => (i * 7 + 3) % 251);
         const hex = (buffer) => [...new Uint8Array(buffer)].map((b) => b.toString(16).padStart(2, "0")).join("");
-        return [hex(plainSha256(data.buffer)), hex(await crypto.subtle.digest("SHA-256", data))];
+        return [hex(await plainSha256(data.buffer)), hex(await crypto.subtle.digest("SHA-256", data))];
     }"""
     ours, theirs = page.evaluate(program, length)
     assert ours == theirs

@@ -91,7 +91,7 @@ def test_no_secret_address_stays_behind_when_the_session_is_over(page: Page, url
     page.get_by_role("link", name="Withdraw my answers").click()
     press_the_button(page, "withdraw")
     page.wait_for_selector("body.withdrawn")
-    page.wait_for_function("localStorage.length === 0")
+    page.wait_for_function("() => localStorage.length === 0")
 
 
 def test_a_session_elsewhere_is_not_forgotten_by_anothers_end(page: Page, url: str) -> None:
