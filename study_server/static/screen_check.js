@@ -2,6 +2,7 @@
 // Nothing is compulsory: what was not touched is not sent.
 import { card } from "/static/screen_card.js";
 import { screenFacts } from "/static/screen.js";
+import { keep, restored } from "/static/screen_place.js";
 import { match, wedge } from "/static/screen_wedge.js";
 
 const form = document.getElementById("checks");
@@ -22,7 +23,8 @@ form.addEventListener("click", pressed);
 form.addEventListener("keydown", entered);
 form.addEventListener("input", typed);
 form.addEventListener("submit", () => fill(facts()));
-show(0);
+const first = restored(form);
+show(first < checks.length ? first : 0);
 
 // Check number `index`; past the last one the form is sent.
 function show(index) {
@@ -30,6 +32,7 @@ function show(index) {
   at = index;
   checks.forEach((check, i) => (check.hidden = i !== at));
   document.getElementById("why").hidden = at > 0;
+  keep(form, at);
   count.textContent = count.dataset.words.replace("{n}", at + 1).replace("{total}", checks.length);
 }
 
@@ -57,6 +60,8 @@ function entered(event) {
 
 function typed(event) {
   if (event.target.matches(".answer input")) nothing(false);
+  if (event.target.type === "range") event.target.dataset.moved = "yes";
+  if (event.isTrusted || event.target.type === "range") keep(form, at);
 }
 
 // "I see no number" is an answer: the hidden field of the same name is sent after what is typed, and counts.
