@@ -38,8 +38,8 @@ def is_free(port: int) -> bool:
 def test_two_workers_store_every_answer_once_and_a_dead_one_is_replaced(
     study: Path, tmp_path: Path, postgres_url: str
 ) -> None:
-    secret = admin_secret(study, postgres_url)
     with server_process(study, tmp_path / "log", database_url=postgres_url, workers=2) as server:
+        secret = admin_secret(study, postgres_url)
         until(lambda: len(server.workers()) == 2)
         with ThreadPoolExecutor(1) as pool:
             load = pool.submit(
@@ -108,8 +108,8 @@ def test_a_proxy_is_an_address_or_a_network(study: Path, proxy: str) -> None:
 def test_forwarded_headers_are_believed_from_stated_proxies_only(
     study: Path, tmp_path: Path, proxies: list[str], believed: bool
 ) -> None:
-    secret = admin_secret(study)
     with server_process(study, tmp_path / "log", proxies=proxies) as server:
+        secret = admin_secret(study)
         headers = {"X-Forwarded-Proto": "https", "X-Forwarded-For": "203.0.113.9"}
         reply = httpx.post(f"{server.url}/admin/login", json={"secret": secret}, headers=headers)
         assert reply.status_code == 303

@@ -20,6 +20,7 @@ from survey_client import Participant
 from fakesss.problem import BadInput
 from study_server.app import admin_secret
 from study_server.codebook import TABLES
+from study_server.database import default_url, open_database
 from study_server.engines import parsed_url
 from study_server.export import export_ratings
 from study_server.serve import served
@@ -32,6 +33,7 @@ import json, re, sys, tempfile
 from pathlib import Path
 import httpx
 from study_server.app import admin_secret
+from study_server.database import default_url, open_database
 from study_server.export import export_ratings
 from study_server.psych_ds import export_psych_ds
 from study_server.serve import served
@@ -136,6 +138,7 @@ def test_no_room_for_the_download(tmp_path: Path, monkeypatch: pytest.MonkeyPatc
 
 def test_a_full_disk_leaves_the_earlier_export(tmp_path: Path) -> None:
     study = write_study(tmp_path / "study", 9)
+    open_database(default_url(study)).close()
     with small_disk(tmp_path / "disk", size=1_000_000) as disk:
         export_ratings(study, disk.seen / "out")
         before = contents(disk.seen / "out")

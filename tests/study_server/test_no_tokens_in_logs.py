@@ -83,7 +83,6 @@ def raw_requests(server: ServerProcess, here: str) -> None:
 @pytest.mark.parametrize(("kind", "workers"), [("sqlite", 1), ("postgres", 2)])
 def test_nobody_is_named(request: pytest.FixtureRequest, study: Path, tmp_path: Path, kind: str, workers: int) -> None:
     database = default_url(study) if kind == "sqlite" else str(request.getfixturevalue("postgres_url"))
-    secret = admin_secret(study, database)
     query = "?" + "&".join(f"{name}={value}" for name, value in PRIVATE.items())
     headers = {
         "X-Forwarded-For": ADDRESS,
@@ -93,6 +92,7 @@ def test_nobody_is_named(request: pytest.FixtureRequest, study: Path, tmp_path: 
     }
     options = {"database_url": database, "proxies": ["127.0.0.1"], "workers": workers}
     with server_process(study, tmp_path / "log", prefix=BOTH_STREAMS, **options) as server:
+        secret = admin_secret(study, database)
         person = Participant(server.url, query)
         person.client.headers.update(headers)
         person.to_trials()

@@ -55,7 +55,8 @@ def test_of_several_addresses_the_one_that_the_proxy_saw(tmp_path: Path) -> None
     with server_process(study, tmp_path / "log", proxies=["127.0.0.1"]) as server:
         for number, told in enumerate(("198.51.100.7, 203.0.113.9", "127.0.0.1, 203.0.113.9", "nonsense, 203.0.113.9")):
             person = Participant(server.url, f"?STUDY_ID=s&PROLIFIC_PID={number}")
-            reply: Any = person.client.post(f"{person.here}/consent", headers={"X-Forwarded-For": told})
+            names = person.state["external"]
+            reply: Any = person.client.post(f"{person.here}/consent", json=names, headers={"X-Forwarded-For": told})
             assert reply.status_code == 200
     assert stored_addresses(study) == ["203.0.113.9"] * 3
 

@@ -93,5 +93,5 @@ def test_an_order_row_that_release_1_drew_can_still_be_passed(tmp_path: Path) ->
 @pytest.mark.parametrize(("day", "is_past"), [("2020-02-29", True), ("2999-01-01", False)])
 def test_a_date_of_deletion_that_is_past_is_said_at_the_start(tmp_path: Path, day: str, is_past: bool) -> None:
     site = create_app(write_study(tmp_path, survey={"retention_until": day})).state.site
-    said = announcement(site, "http://127.0.0.1:1", (), 1, is_local=True)
+    said = announcement(site, "http://127.0.0.1:1", "127.0.0.1", (), 1)
     assert (f"Warning: retention_until = {day} is past" in said) is is_past
