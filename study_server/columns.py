@@ -53,7 +53,12 @@ SCREEN = {
     ),
     "window_width_px": Column("width of the browser's viewport", "number", "CSS pixel", 0),
     "window_height_px": Column("height of the browser's viewport", "number", "CSS pixel", 0),
-    "focus_lost_ms": Column("time of the trial during which the page was hidden or not in front", "number", "ms", 0),
+    "focus_lost_ms": Column(
+        "time of the trial during which the page was hidden, not in front or gone, or the picture covered",
+        "number",
+        "ms",
+        0,
+    ),
 }
 """How a picture stood on the screen."""
 
