@@ -106,7 +106,7 @@ def with_repeats(frame: pd.DataFrame, study: StudyInfo) -> pd.DataFrame:
     again = {picture.id: picture.same_picture_as for picture in study.pictures if picture.role == "repeat"}
     if "repeat_of" in frame or not again:
         return frame
-    return frame.assign(repeat_of=frame["stimulus"].map(again).fillna(""))
+    return frame.assign(repeat_of=[again.get(picture, "") for picture in frame["stimulus"]])
 
 
 def decimals_lost(study: StudyInfo, ratings: pd.DataFrame) -> list[str]:
