@@ -103,7 +103,7 @@ def results_json(
 
 def with_repeats(frame: pd.DataFrame, study: StudyInfo) -> pd.DataFrame:
     """`frame` with `repeat_of` by the study, where the file has no such column, as a wide one."""
-    again = {picture.id: picture.same_picture_as for picture in study.pictures if picture.role == "repeat"}
+    again = {picture.id: picture.same_picture_as or "" for picture in study.pictures if picture.role == "repeat"}
     if "repeat_of" in frame or not again:
         return frame
     return frame.assign(repeat_of=[again.get(picture, "") for picture in frame["stimulus"]])
