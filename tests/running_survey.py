@@ -1,13 +1,13 @@
 """A study served in each of the ways there are: SQLite, PostgreSQL, and PostgreSQL with two worker processes."""
 
 import contextlib
-import time
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 from dataclasses import dataclass
 from pathlib import Path
 
 from server_process import server_process
 from stored import sound
+from waiting import until
 
 from study_server.database import default_url
 from study_server.serve import served
@@ -36,11 +36,3 @@ def running_survey(kind: str, study: Path, log: Path, postgres_url: str = "") ->
         with served(study, database_url=database) as url:
             yield Running(url, database)
     sound(database)
-
-
-def until(condition: Callable[[], bool], seconds: float = 60.0) -> None:
-    """Wait for what is to happen."""
-    end = time.monotonic() + seconds
-    while not condition():
-        assert time.monotonic() < end, "it did not happen"
-        time.sleep(0.01)

@@ -2,13 +2,14 @@
 
 import threading
 import time
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 from concurrent.futures import ThreadPoolExecutor
 from http.server import BaseHTTPRequestHandler, ThreadingHTTPServer
 
 import httpx
 import pytest
 from faulty_network import FaultyNetwork, faulty_network
+from waiting import until
 
 LONG = bytes(range(256)) * 1000
 
@@ -82,14 +83,6 @@ def network(server: type[Handler]) -> Iterator[FaultyNetwork]:
 def client(network: FaultyNetwork) -> Iterator[httpx.Client]:
     with httpx.Client(base_url=network.url, timeout=30) as fresh:
         yield fresh
-
-
-def until(true: Callable[[], bool]) -> None:
-    """Wait for what another thread is about to do."""
-    end = time.monotonic() + 30
-    while not true():
-        assert time.monotonic() < end
-        time.sleep(0.01)
 
 
 def test_everything_passes_on_one_connection_as_it_is(

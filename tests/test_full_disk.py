@@ -13,6 +13,9 @@ from full_disk import SmallDisk, small_disk
 from server_process import NotStarted, server_process
 from study_fixture import write_study
 from survey_client import Participant
+from waiting import until
+
+from study_server.health import REMEMBERED_S
 
 INSERT = """
 import sqlite3, sys
@@ -78,7 +81,7 @@ def test_a_server_is_unwell_while_its_disk_is_full_and_does_not_start_on_one_tha
         person = Participant(server.url).to_trials()
         person.rate()
         disk.fill()
-        assert httpx.get(f"{server.url}/health").status_code == 503
+        until(lambda: httpx.get(f"{server.url}/health").status_code == 503, 10 * REMEMBERED_S)
         disk.free()
         assert httpx.get(f"{server.url}/health").status_code == 200
         person.to_end()

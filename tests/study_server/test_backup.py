@@ -6,8 +6,7 @@ import shutil
 import sqlite3
 import subprocess
 import threading
-import time
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 from concurrent.futures import ThreadPoolExecutor
 from contextlib import closing, contextmanager
 from pathlib import Path
@@ -19,6 +18,7 @@ from postgres_server import PASSWORD, binaries
 from stored import sound
 from study_fixture import write_study
 from survey_client import JSON, Participant
+from waiting import until
 
 import fakesss.cli_survey  # noqa: F401  (adds the command)
 from fakesss.cli import commands
@@ -55,14 +55,6 @@ def people_rating(url: str, raters: int) -> Iterator[Acknowledged]:
             walk.result()
 
 
-def wait_until(is_so: Callable[[], bool]) -> None:
-    """Return as soon as it is so; fail after a minute."""
-    until = time.monotonic() + 60
-    while not is_so():
-        assert time.monotonic() < until
-        time.sleep(0.01)
-
-
 @pytest.mark.parametrize("copies", [3, pytest.param(40, marks=pytest.mark.long)])
 def test_a_backup_under_load_restores_whole(study: Path, tmp_path: Path, copies: int) -> None:
     restored = shutil.copytree(study, tmp_path / "restored")
@@ -72,7 +64,7 @@ def test_a_backup_under_load_restores_whole(study: Path, tmp_path: Path, copies:
         away.rate(6)
         with people_rating(url, raters=4) as acknowledged:
             for copy in range(1, copies + 1):
-                wait_until(lambda least=20 * copy: len(acknowledged) > least)  # type: ignore[misc]
+                until(lambda least=20 * copy: len(acknowledged) > least)  # type: ignore[misc]
                 before = dict(acknowledged)
                 response = admin.get("/admin/backup")
                 at_the_end = len(acknowledged)

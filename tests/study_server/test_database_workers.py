@@ -3,9 +3,7 @@
 import os
 import signal
 import socket
-import time
 from collections import Counter
-from collections.abc import Callable
 from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 
@@ -13,6 +11,7 @@ import httpx
 import pytest
 from server_process import server_process
 from survey_client import JSON, Participant
+from waiting import until
 
 from fakesss.problem import BadInput
 from study_server.app import admin_secret
@@ -20,14 +19,6 @@ from study_server.export import export_ratings
 from study_server.manifest import load_study
 from study_server.serve import serve
 from study_server.simulate import simulate
-
-
-def until(condition: Callable[[], bool], seconds: float = 60.0) -> None:
-    """Wait for what is to happen."""
-    end = time.monotonic() + seconds
-    while not condition():
-        assert time.monotonic() < end, "it did not happen"
-        time.sleep(0.02)
 
 
 def is_free(port: int) -> bool:

@@ -11,10 +11,10 @@ import httpx
 import psycopg
 import pytest
 from click.testing import CliRunner
-from running_survey import until
 from stored import sound
 from study_fixture import write_study
 from survey_client import JSON, Participant
+from waiting import until
 
 import fakesss.cli_survey  # noqa: F401  (adds the command)
 from fakesss.cli import commands

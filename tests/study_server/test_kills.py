@@ -11,10 +11,10 @@ from typing import Any
 import pytest
 from load import strike, under_load
 from postgres_server import PostgresServer
-from running_survey import until
 from server_process import server_process
 from study_fixture import write_study
 from survey_client import Participant
+from waiting import until
 
 from study_server.database import default_url
 from study_server.serve import START_S

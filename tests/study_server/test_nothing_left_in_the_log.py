@@ -7,10 +7,10 @@ import sqlite3
 from pathlib import Path
 
 import pytest
-from running_survey import until
 from server_process import server_process
 from study_fixture import write_study
 from survey_client import Participant
+from waiting import until
 
 from study_server.serve import served
 

@@ -9,10 +9,10 @@ from pathlib import Path
 
 import httpx
 import pytest
-from running_survey import until
 from sqlalchemy import Connection, event
 from study_fixture import write_study
 from survey_client import JSON, Participant
+from waiting import until
 
 from study_server import schema
 from study_server.app import create_app

@@ -15,11 +15,11 @@ import httpx
 import psycopg
 import pytest
 from load import strike, under_load
-from running_survey import until
 from server_process import server_process
 from stored import sound
 from study_fixture import write_study
 from survey_client import Participant
+from waiting import until
 
 from study_server.database import default_url
 from study_server.engines import parsed_url
