@@ -1,4 +1,4 @@
-"""How many people the survey serves at once, and how near its saves come to bare SQLite: `survey_load.py --help`.
+"""How many people the survey serves at once, and how near its saves come to bare SQLite.
 
 Two questions, each answered with all acknowledged answers looked up in the export afterwards.
 
@@ -259,7 +259,7 @@ def main(folder: Path | None, people: int, rounds: int, seconds: float, think: f
         ]
         print_table(report["throughput"], THROUGHPUT)
         most = report["throughput"][0]["saves_per_s"] * think * math.exp(SIGMA**2 / 2)
-        sizes = [round(most * share / 10) for share in range(1, 11)]
+        sizes = [round(most * share / 20) for share in range(1, 21)]
         report["people"] = people_at_once(
             Row("SQLite", sqlite_url(folder / "usual.sqlite")), usual, folder, sizes, think, 3 * seconds
         )
