@@ -2,12 +2,13 @@
 
 Two questions, each answered with all acknowledged answers looked up in the export afterwards.
 
-- *Throughput*: people without think time, the next save sent when the last is acknowledged. In turn with it, in the
-  same rounds, on the same disk: bare SQLite in plain sqlite3 (WAL, synchronous=FULL, a transaction each), once a single
-  INSERT, once the very statements that the survey sends for a save, recorded from it. The disk is also made as slow as
-  others are: a library loaded before sqlite's (LD_PRELOAD) adds the stated time to every fsync and fdatasync.
-- *People*: with think time as people have it (lognormal), fetching each picture once, more and more of them until the
-  99th percentile of a save passes 50 ms.
+Throughput: people without think time, the next save sent when the last is acknowledged. In turn with it, in the same
+rounds, on the same disk: bare SQLite in plain sqlite3 (WAL, synchronous=FULL, a transaction each), once a single
+INSERT, once the very statements that the survey sends for a save, recorded from it. The disk is also made as slow as
+others are: a library loaded before sqlite's (LD_PRELOAD) adds the stated time to every fsync and fdatasync.
+
+People: with think time as people have it (lognormal), fetching each picture once, more and more of them until the
+99th percentile of a save passes 50 ms.
 
 Server, people and bare SQLite are processes of their own; how busy the people's process was is told with each figure.
 """
