@@ -67,7 +67,7 @@ docs: setup .venv/.ready-docs
 	@echo "docs/_build/html/index.html"
 
 catalogues: setup
-	$(BIN)/python -m study_server.catalogues
+	$(BIN)/python -m study_server.wording.catalogues
 
 clean:
 	rm -rf .venv node_modules docs/_build build dist demo test-output *.egg-info .pytest_cache .hypothesis .mypy_cache .ruff_cache

@@ -50,17 +50,7 @@ def write_report(
     mend. Equal input gives equal bytes, on any number of cores: linear algebra runs on one, as sums of several threads
     differ in their last digits.
     """
-    known = read_manifest(manifest) if manifest is not None else None
-    refuse_contradictions(known is not None, wide, factors)
-    scales = {q.name: q.scale for q in known.questions} if known is not None else scale
-    asked = known.questions[0].name if known is not None and len(known.questions) == 1 else None
-    frame = read_ratings(ratings, columns, scales, wide=wide, question=asked)
-    study = known or from_ratings(
-        frame, f"Ratings in {ratings.name}", scale, list(factors or {}),
-        read_levels(ratings, columns or {}, factors) if factors else None,
-    )  # fmt: skip
-    frame = with_repeats(frame, study)
-    refuse_strangers(study, frame, ratings)
+    study, frame = study_and_answers(ratings, manifest, columns, wide, factors, scale)
     plan = plan or study.plan
     refuse_margins(plan, {q.name: q.scale for q in study.questions}, "plan")
     asked_of = frame["question"].isin([q.name for q in study.questions])
@@ -76,6 +66,29 @@ def write_report(
     results = results_json(study, plan, sample, tables, said, origin)
     save(out, render_page(evidence, sections, said, origin), results, tables, drawings)
     return results
+
+
+def study_and_answers(
+    ratings: Path,
+    manifest: Path | None,
+    columns: Mapping[str, str] | None,
+    wide: str | None,
+    factors: Mapping[str, str] | None,
+    scale: int | None,
+) -> tuple[StudyInfo, pd.DataFrame]:
+    """What was asked, by the manifest or by the answers alone, and the answers: see `write_report`."""
+    known = read_manifest(manifest) if manifest is not None else None
+    refuse_contradictions(known is not None, wide, factors)
+    scales = {q.name: q.scale for q in known.questions} if known is not None else scale
+    asked = known.questions[0].name if known is not None and len(known.questions) == 1 else None
+    frame = read_ratings(ratings, columns, scales, wide=wide, question=asked)
+    study = known or from_ratings(
+        frame, f"Ratings in {ratings.name}", scale, list(factors or {}),
+        read_levels(ratings, columns or {}, factors) if factors else None,
+    )  # fmt: skip
+    frame = with_repeats(frame, study)
+    refuse_strangers(study, frame, ratings)
+    return study, frame
 
 
 def results_json(

@@ -2,7 +2,7 @@
 
     answer = mean of the picture + person + noise, on a rating scale rounded and clipped to 1..7
 
-as study_server/raters.py answers, with its spreads. The statistics
+as study_server/simulation/raters.py answers, with its spreads. The statistics
 here are the public objects, called as the report calls them; those quick enough for thousands of studies are judged by
 calibration_batches.py.
 """
@@ -24,7 +24,7 @@ from analysis.statistics.wilcoxon import SignedRanks
 from benchmarks.calibration_batches import ALPHA
 
 STEPS = 7
-PERSON_SD, NOISE_SD = 0.7, 0.9  # study_server.raters.Effects
+PERSON_SD, NOISE_SD = 0.7, 0.9  # study_server.simulation.raters.Effects
 PICTURE_SD = 1.0
 BETWEEN = {"value": "rating", "group": "condition"}
 WITHIN = {"value": "rating", "within": "condition", "subject": "participant"}

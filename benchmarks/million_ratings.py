@@ -36,7 +36,7 @@ from analysis import write_report
 from analysis.columns import OPTIONAL, REQUIRED
 from analysis.cue_findings import NAMES as CUE_NAMES
 from analysis.statistics.proportional_odds import CountedOrderedModel
-from study_server.columns import RATINGS
+from study_server.exports.columns import RATINGS
 
 FACTORS = {"thickness exponent": 5, "backlight": 10, "diffuse weight": 10}
 SCALE = 7

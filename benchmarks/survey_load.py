@@ -37,9 +37,9 @@ from survey_disk import Transaction, is_save, slow_disk
 from survey_study import write_study
 
 from study_server.app import create_app
-from study_server.engines import sqlite_url
-from study_server.export import export_ratings
+from study_server.exports.export import export_ratings
 from study_server.serve import running
+from study_server.storage.engines import sqlite_url
 
 HERE = Path(__file__).parent
 SERVER = """

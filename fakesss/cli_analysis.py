@@ -49,7 +49,7 @@ def report(study: Path | None, out: Path | None, database: str | None, pdf: bool
     print_pdf = pdf_printer(out) if pdf else None
     options = {"plan": plan_in(given["plan"]), "command": spoken(study, given)}
     if study is not None and given["ratings"] is None:
-        from study_server.export import left_out, mode_to_analyse
+        from study_server.exports.export import left_out, mode_to_analyse
 
         mode = mode_to_analyse(study, database)
         results = report_study(study, out, database, mode, **options)
@@ -150,7 +150,7 @@ def spoken(study: Path | None, given: Mapping[str, Any]) -> str:
 
 def report_study(study: Path, out: Path, database: str | None, mode: Mode, **options: Any) -> dict[str, Any]:
     """The report on the study's own ratings; what was analysed lies beside it in `data/`."""
-    from study_server.export import export_ratings
+    from study_server.exports.export import export_ratings
 
     files = {p.stem: p for p in export_ratings(study, out / "data", mode=mode, database_url=database)}
     return write(files["ratings"], out, study, participants=files["participants"], **options)

@@ -76,9 +76,9 @@ def power_of(
     from analysis.power_table import found_rows
     from analysis.study import read_manifest
     from stimuli.manifest import manifest_path
-    from study_server.crowd import Crowd
     from study_server.manifest import load_study, study_changed
-    from study_server.raters import default_effects, load_effects
+    from study_server.simulation.crowd import Crowd
+    from study_server.simulation.raters import default_effects, load_effects
 
     built = load_study(study)
     info = read_manifest(manifest_path(study))

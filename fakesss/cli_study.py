@@ -168,7 +168,7 @@ def simulate(
     from study_server.app import admin_secret
     from study_server.manifest import load_study
     from study_server.serve import served
-    from study_server.simulate import simulate as walk
+    from study_server.simulation.simulate import simulate as walk
 
     built = load_study(study)
     raters = partial(walk, started=started, completed=completed, seed=seed, effects=effects)
@@ -194,8 +194,8 @@ def export(study: Path, out: Path | None, form: str, database: str | None, mode:
 
     Example: fakesss export my-study --format psych-ds -o dataset
     """
-    from study_server.export import export_ratings, left_out
-    from study_server.psych_ds import export_psych_ds
+    from study_server.exports.export import export_ratings, left_out
+    from study_server.exports.psych_ds import export_psych_ds
 
     write, usual = (export_ratings, "export") if form == "csv" else (export_psych_ds, "psych-ds")
     files = [str(path) for path in write(study, out or study / usual, mode=mode, database_url=database)]

@@ -23,7 +23,7 @@ def backup(study: Path, out: Path | None, database: str | None, as_json: bool) -
 
     Example: fakesss backup my-study -o monday.sqlite
     """
-    from study_server.backup import backup as copy
+    from study_server.storage.backup import backup as copy
 
     result = copy(study, out, database)
     done(result, as_json, f"{result['file']}\n{result['bytes']} bytes, checked; holds the admin secret: keep it safe")
@@ -44,8 +44,8 @@ def forget(study: Path, database: str | None, yes: bool, as_json: bool) -> None:
 
     Example: fakesss forget my-study
     """
-    from study_server.forget import forget as forget_people
-    from study_server.forget import sessions_held
+    from study_server.storage.forget import forget as forget_people
+    from study_server.storage.forget import sessions_held
 
     if not yes:
         people = sessions_held(study, database)

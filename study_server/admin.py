@@ -8,10 +8,10 @@ from fastapi.responses import JSONResponse, RedirectResponse
 from sqlalchemy import Connection
 
 from study_server import counts, gates, happenings
-from study_server.admin_door import COOKIE_S, Locked, Unlocked, cookie_name, cookie_value, is_secret
 from study_server.downloads import router as downloads
-from study_server.export import ROWS
+from study_server.exports.export import ROWS
 from study_server.gates import Gate
+from study_server.guards.admin_door import COOKIE_S, Locked, Unlocked, cookie_name, cookie_value, is_secret
 from study_server.sessions import release_s
 from study_server.site import AtSite, Fields, Site, answer, site_of, sorry, wants_json
 from study_server.times import times

@@ -10,9 +10,9 @@ from datetime import date
 from sqlalchemy import text
 
 from study_server.app import SECRET_VARIABLE
-from study_server.database import Database
-from study_server.engines import shown_url
 from study_server.site import Site
+from study_server.storage.database import Database
+from study_server.storage.engines import shown_url
 
 SOMEWHERE = {socket.AF_INET: "192.0.2.1", socket.AF_INET6: "2001:db8::1"}
 """Addresses of nobody (RFC 5737, RFC 3849): which of ours would send to them says by which others reach us."""

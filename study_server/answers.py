@@ -7,11 +7,11 @@ from pydantic import Field
 from sqlalchemy import Connection, RowMapping, bindparam, insert, select, update
 
 from fakesss.problem import Strict
-from study_server import schema
 from study_server.manifest import BuiltStudy
 from study_server.sessions import Session, record
 from study_server.settings import CHECK_NAME
-from study_server.texts import N_
+from study_server.storage import schema
+from study_server.wording.texts import N_
 
 DAY_MS = 86_400_000.0
 Milliseconds = Annotated[float, Field(ge=0, le=30 * DAY_MS)]

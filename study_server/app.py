@@ -14,17 +14,18 @@ from sqlalchemy.exc import DatabaseError, TimeoutError
 from starlette.exceptions import HTTPException
 
 from fakesss.problem import BadInput
-from study_server import admin, participant, pictures, plates
-from study_server.admin_door import SHORTEST_SECRET
-from study_server.adoption import adopt_study
-from study_server.database import chosen_url, open_database, open_existing, reason, secret
-from study_server.engines import shown_url
+from study_server import admin, participant, pictures
 from study_server.gates import gate
+from study_server.guards.admin_door import SHORTEST_SECRET
+from study_server.guards.web_safety import WebSafety
 from study_server.manifest import load_study, study_changed
 from study_server.openapi import described
+from study_server.screen import plates
 from study_server.site import HERE, AtSite, Mode, Reporter, Site, site_of, sorry
-from study_server.texts import N_
-from study_server.web_safety import WebSafety
+from study_server.storage.adoption import adopt_study
+from study_server.storage.database import chosen_url, open_database, open_existing, reason, secret
+from study_server.storage.engines import shown_url
+from study_server.wording.texts import N_
 
 log = logging.getLogger(__name__)
 

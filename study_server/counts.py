@@ -8,9 +8,9 @@ from typing import Any
 
 from sqlalchemy import Connection, Integer, Select, Subquery, and_, case, cast, func, select
 
-from study_server import schema
 from study_server.sessions import UNDER_WAY, presentations, sessions, status
 from study_server.settings import CHECK_NAME
+from study_server.storage import schema
 
 STATES = ("active", "finished", "dropped", "screened-out", "withdrawn")
 

@@ -9,14 +9,14 @@ from fastapi.responses import FileResponse, StreamingResponse
 
 from fakesss.problem import BadInput
 from study_server import counts
-from study_server.admin_door import Unlocked
-from study_server.backup import file_name, no_backup, opened_backup
-from study_server.export import ROWS, table_text
-from study_server.export_rows import Source
-from study_server.psych_ds import write_zip
+from study_server.exports.export import ROWS, table_text
+from study_server.exports.export_rows import Source
+from study_server.exports.psych_ds import write_zip
+from study_server.exports.spool import pieces_of, spooled
+from study_server.guards.admin_door import Unlocked
 from study_server.sessions import release_s
 from study_server.site import Mode, sorry
-from study_server.spool import pieces_of, spooled
+from study_server.storage.backup import file_name, no_backup, opened_backup
 
 router = APIRouter()
 

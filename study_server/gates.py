@@ -8,8 +8,8 @@ from typing import Any, Literal
 
 from sqlalchemy import Connection, insert, select
 
-from study_server import schema
-from study_server.cells import minute
+from study_server.exports.cells import minute
+from study_server.storage import schema
 
 Gate = Literal["open", "paused", "closed"]
 

@@ -5,10 +5,10 @@ from typing import Any
 
 from sqlalchemy import Connection, select
 
-from study_server import schema
-from study_server.cells import minute
+from study_server.exports.cells import minute
 from study_server.manifest import BuiltStudy
 from study_server.sessions import sessions
+from study_server.storage import schema
 
 LATEST = 20
 """How many of each are shown; the export has all."""

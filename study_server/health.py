@@ -5,7 +5,7 @@ import threading
 import time
 from dataclasses import dataclass, field
 
-from study_server.database import Database, is_writable
+from study_server.storage.database import Database, is_writable
 
 REMEMBERED_S = 1.0
 """How long the database is believed to be well: however often this is asked, it is written to once in so long."""

@@ -9,7 +9,7 @@ from pathlib import Path
 from typing import Any
 
 from fakesss.problem import BadInput
-from study_server.assignment import most_checks
+from study_server.ordering.assignment import most_checks
 from study_server.settings import SurveySettings, check_survey
 
 

@@ -10,13 +10,14 @@ from urllib.parse import quote, urlencode
 from babel import Locale
 from sqlalchemy import Connection, RowMapping
 
-from study_server import screen_check, texts
-from study_server.language import Words, offered, words
+from study_server.guards.tokens import External
 from study_server.manifest import BuiltStudy
 from study_server.pictures import picture_facts
+from study_server.screen import screen_check
 from study_server.sessions import Session, unanswered
 from study_server.settings import CHECK_NAME, Question, Survey
-from study_server.tokens import External
+from study_server.wording import texts
+from study_server.wording.language import Words, offered, words
 
 HERE = Path(__file__).parent
 OURS = sorted([*HERE.glob("static/*.js"), *HERE.glob("templates/*.html")])

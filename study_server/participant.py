@@ -18,13 +18,13 @@ from starlette.concurrency import run_in_threadpool
 from starlette.exceptions import HTTPException
 
 from study_server import answers, pages, sessions, steps
-from study_server.copies import strike_out
 from study_server.gates import gate
-from study_server.rate_limit import retry_after
+from study_server.guards.rate_limit import retry_after
+from study_server.guards.tokens import External, belongs_to, is_valid, make_token
 from study_server.sessions import Session
 from study_server.site import AtSite, Fields, Site, answer, sorry, told, visitor_language
-from study_server.texts import N_
-from study_server.tokens import External, belongs_to, is_valid, make_token
+from study_server.storage.copies import strike_out
+from study_server.wording.texts import N_
 
 MOST_REFUSALS = 100
 """Of one session that are noted: whoever sends nonsense for ever does not fill the disk with it."""

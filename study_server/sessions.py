@@ -9,10 +9,10 @@ from typing import Any
 from sqlalchemy import Connection, RowMapping, and_, bindparam, case, func, insert, select, update
 from sqlalchemy.sql.elements import ColumnElement
 
-from study_server import schema
-from study_server.adoption import design_of, live_elsewhere
+from study_server.guards.tokens import External
 from study_server.manifest import BuiltStudy
-from study_server.tokens import External
+from study_server.storage import schema
+from study_server.storage.adoption import design_of, live_elsewhere
 
 sessions = schema.sessions.c
 presentations = schema.presentations.c

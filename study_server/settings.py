@@ -8,9 +8,9 @@ from typing import Annotated, Any, Literal, Self
 from pydantic import AfterValidator, Field, model_validator
 
 from fakesss.problem import BadInput, Strict, validated
-from study_server import sayings, texts
-from study_server.assignment import Blocks, Order
-from study_server.cells import FORMULA_STARTS
+from study_server.exports.cells import FORMULA_STARTS
+from study_server.ordering.assignment import Blocks, Order
+from study_server.wording import sayings, texts
 
 Text = Annotated[str, Field(min_length=1, max_length=20_000)]
 

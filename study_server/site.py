@@ -10,14 +10,14 @@ from fastapi import Depends, Request, Response
 from fastapi.responses import JSONResponse
 from starlette.exceptions import HTTPException
 
-from study_server.database import Database
+from study_server.guards.rate_limit import Limits
+from study_server.guards.throttle import Throttle
 from study_server.health import Health
-from study_server.language import catalogue, negotiated, words
 from study_server.manifest import BuiltStudy
-from study_server.rate_limit import Limits
-from study_server.templating import templates
-from study_server.texts import N_
-from study_server.throttle import Throttle
+from study_server.storage.database import Database
+from study_server.wording.language import catalogue, negotiated, words
+from study_server.wording.templating import templates
+from study_server.wording.texts import N_
 
 Mode = Literal["live", "pilot", "simulated"]
 

@@ -7,10 +7,10 @@ from sqlalchemy import Connection, RowMapping, select
 
 from study_server.counts import failed_checks
 from study_server.manifest import BuiltStudy
-from study_server.screen_check import leave_screen
+from study_server.screen.screen_check import leave_screen
 from study_server.sessions import Session, advance, after_about, expected_and_stored, record
 from study_server.settings import AboutField, Survey
-from study_server.texts import N_
+from study_server.wording.texts import N_
 
 CODE_LETTERS = "ABCDEFGHJKLMNPQRSTUVWXYZ23456789"
 """Without I, O, 0 and 1, which are mistaken for one another when copied by hand."""

@@ -5,8 +5,8 @@ from typing import Any
 from sqlalchemy import Connection, Float, and_, cast, func, or_, select
 from sqlalchemy.sql.elements import ColumnElement
 
-from study_server import schema
 from study_server.sessions import presentations, sessions
+from study_server.storage import schema
 
 QUARTILES = {"q1_s": 1, "median_s": 2, "q3_s": 3}
 """Name of each and how many quarters of the times lie below it."""

@@ -10,7 +10,7 @@ import pytest
 from hypothesis import settings
 from postgres_server import PostgresServer, postgres_server
 
-from study_server.engines import sqlite_url
+from study_server.storage.engines import sqlite_url
 
 assert "numpy" not in sys.modules, "numpy reads the number of threads when it is imported, and was imported before"
 os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")

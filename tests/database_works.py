@@ -4,8 +4,8 @@ from collections.abc import Callable
 
 from sqlalchemy import Connection, insert, select
 
-from study_server import schema
-from study_server.database import Database
+from study_server.storage import schema
+from study_server.storage.database import Database
 
 Work = Callable[[Connection], object]
 

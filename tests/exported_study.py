@@ -7,7 +7,7 @@ from typing import Any
 from study_fixture import write_study
 from survey_client import Participant
 
-from study_server.database import default_url, open_database
+from study_server.storage.database import default_url, open_database
 
 COMMENT = '=HYPERLINK("http://x"), "quoted",\r\nsecond line; déjà vu 半透明'
 JOB = "@home\rEVIL,x,live,finished"

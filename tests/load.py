@@ -13,11 +13,11 @@ from server_process import ServerProcess
 from sqlalchemy import func, select
 from stored import sound
 
-from study_server import schema
 from study_server.app import admin_secret
-from study_server.engines import connect
 from study_server.manifest import load_study
-from study_server.simulate import simulate
+from study_server.simulation.simulate import simulate
+from study_server.storage import schema
+from study_server.storage.engines import connect
 
 RATERS = 12
 """In one round, the last of whom leaves in the middle. Rounds follow each other until the last blow has fallen."""

@@ -4,10 +4,10 @@ from pathlib import Path
 
 from sqlalchemy import insert
 
-from study_server import schema
-from study_server.adoption import adopt_study
-from study_server.database import default_url, open_database
 from study_server.manifest import load_study
+from study_server.storage import schema
+from study_server.storage.adoption import adopt_study
+from study_server.storage.database import default_url, open_database
 
 BEGIN = 1_700_000_000.0
 AT_ONCE = 200

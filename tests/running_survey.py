@@ -9,8 +9,8 @@ from server_process import server_process
 from stored import sound
 from waiting import until
 
-from study_server.database import default_url
 from study_server.serve import served
+from study_server.storage.database import default_url
 
 KINDS = ("sqlite", "postgres", "two workers")
 

@@ -10,9 +10,9 @@ from typing import Any
 
 from sqlalchemy import Connection, func, select
 
-from study_server import schema
-from study_server.database import open_database
-from study_server.engines import sqlite_url
+from study_server.storage import schema
+from study_server.storage.database import open_database
+from study_server.storage.engines import sqlite_url
 
 Answers = Mapping[tuple[int, str], list[int]]
 """One session's: (place, question) -> the first answer and its revisions, oldest first; practice included."""

@@ -16,11 +16,12 @@ import fakesss.cli_power
 import fakesss.cli_study
 import fakesss.cli_survey  # noqa: F401  (all add their commands)
 from fakesss.cli import commands
-from study_server import prompt, rate_limit, throttle, web_safety
-from study_server.admin_door import SHORTEST_SECRET
+from study_server import prompt
 from study_server.app import SECRET_VARIABLE
-from study_server.engines import AT_ONCE
+from study_server.guards import rate_limit, throttle, web_safety
+from study_server.guards.admin_door import SHORTEST_SECRET
 from study_server.serve import FINISH_S
+from study_server.storage.engines import AT_ONCE
 
 DOCS = Path(__file__).parent.parent / "docs"
 FILES = sorted((DOCS / "deployment").iterdir())
@@ -157,7 +158,7 @@ def test_the_image_holds_the_program_and_nothing_else() -> None:
     let_in = {line[1:] for line in lines if line.startswith("!")}
     assert lines[0] == "*" and "**/__pycache__" in lines
     project = tomllib.loads((root / "pyproject.toml").read_text())
-    packages = {name.partition(".")[0] for name in project["tool"]["setuptools"]["packages"]}
+    packages = {pattern.removesuffix("*") for pattern in project["tool"]["setuptools"]["packages"]["find"]["include"]}
     files = {"pyproject.toml", "constraints.txt", project["project"]["readme"], *project["project"]["license-files"]}
     assert let_in == packages | files
 

@@ -19,7 +19,7 @@ from fakesss.pipeline import build
 from fakesss.scene import Scene, scene_paths
 from fakesss.shapes import names
 from stimuli.study import Compare, Control, Design, Factor, Study
-from study_server.columns import RATINGS
+from study_server.exports.columns import RATINGS
 
 ROOT = Path(__file__).parent.parent
 

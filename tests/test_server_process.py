@@ -10,7 +10,7 @@ import pytest
 from server_process import NotStarted, ServerProcess, server_process
 from study_fixture import write_study
 
-from study_server.engines import sqlite_url
+from study_server.storage.engines import sqlite_url
 
 
 def test_killed_and_started_again_at_the_same_address(tmp_path: Path) -> None:

@@ -21,7 +21,7 @@ from stimuli.template import write_template
 from study_server.app import admin_secret
 from study_server.manifest import load_study
 from study_server.serve import served
-from study_server.simulate import simulate
+from study_server.simulation.simulate import simulate
 
 HERE = Path(__file__).parent
 INK, PAPER = (40, 40, 40), (255, 255, 255)

@@ -8,7 +8,7 @@ import pytest
 
 from analysis import read_ratings
 from fakesss.problem import BadInput
-from study_server.cells import cell
+from study_server.exports.cells import cell
 
 Write = Callable[[str], Path]
 HEAD = "participant,stimulus,question,rating\n"

@@ -6,7 +6,7 @@ from pathlib import Path
 
 from playwright.sync_api import Page, expect
 
-from study_server.export import export_ratings
+from study_server.exports.export import export_ratings
 
 
 def answerable(page: Page, count: str) -> None:

@@ -10,8 +10,8 @@ from every_page import whole_session
 from playwright.sync_api import Browser
 from translated_study import TEXTS, translated_study
 
-from study_server.language import LOCALES
 from study_server.serve import served
+from study_server.wording.language import LOCALES
 
 pytestmark = pytest.mark.browser
 

@@ -20,7 +20,7 @@ from fakesss.cli_analysis import report_folder
 from study_server.app import admin_secret
 from study_server.manifest import load_study
 from study_server.serve import served
-from study_server.simulate import simulate
+from study_server.simulation.simulate import simulate
 
 pytestmark = pytest.mark.browser
 

@@ -13,9 +13,9 @@ from PIL import Image
 from playwright.sync_api import Browser, Locator, Page, expect
 from study_fixture import write_study
 
-from study_server.export import export_ratings
-from study_server.plates import PLATES
-from study_server.screen_check import DARK_STEPS, FACTS, LIGHT_STEPS, MATCHES, columns, gamma
+from study_server.exports.export import export_ratings
+from study_server.screen.plates import PLATES
+from study_server.screen.screen_check import DARK_STEPS, FACTS, LIGHT_STEPS, MATCHES, columns, gamma
 from study_server.serve import served
 
 pytestmark = pytest.mark.browser

@@ -8,8 +8,8 @@ from sqlalchemy import select
 from steps import rate
 from stored import Stored, sound
 
-from study_server import schema
-from study_server.database import default_url, open_database
+from study_server.storage import schema
+from study_server.storage.database import default_url, open_database
 
 PATIENCE_MS = 90_000
 """For what may take long on a busy machine; nothing takes so long when all is well."""

@@ -12,11 +12,12 @@ from sqlalchemy import event
 from study_fixture import write_study
 from survey_client import JSON, Participant
 
-from study_server import admin, schema, sessions
+from study_server import admin, sessions
 from study_server.app import admin_secret, create_app
 from study_server.counts import balance
 from study_server.serve import served
 from study_server.site import Site
+from study_server.storage import schema
 from study_server.times import times
 
 

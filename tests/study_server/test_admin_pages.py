@@ -9,8 +9,8 @@ from survey_client import JSON, Participant
 
 from fakesss.problem import BadInput
 from study_server.app import admin_secret, create_app
+from study_server.guards.throttle import GUESSES
 from study_server.serve import served
-from study_server.throttle import GUESSES
 
 Exported = Callable[..., list[dict[str, str]]]
 

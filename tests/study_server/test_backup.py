@@ -23,10 +23,10 @@ from waiting import until
 import fakesss.cli_survey  # noqa: F401  (adds the command)
 from fakesss.cli import commands
 from fakesss.problem import BadInput
-from study_server import backup as backups
 from study_server.app import admin_secret
-from study_server.engines import sqlite_url
 from study_server.serve import served
+from study_server.storage import backup as backups
+from study_server.storage.engines import sqlite_url
 
 Acknowledged = dict[tuple[str, int, str], int]
 

@@ -10,7 +10,7 @@ from study_fixture import write_study
 
 from fakesss.problem import BadInput
 from study_server.app import create_app
-from study_server.export import export_ratings
+from study_server.exports.export import export_ratings
 from study_server.manifest import load_study, study_changed
 
 

@@ -18,8 +18,8 @@ from stored import sound
 from study_fixture import write_study
 from survey_client import ABOUT, Participant
 
-from study_server.database import default_url
 from study_server.serve import served
+from study_server.storage.database import default_url
 
 FORMS: dict[str, Mapping[str, str]] = {"about": ABOUT, "screen": {}, "instructions": {}, "ready": {}}
 DESIGNS: dict[str, dict[str, Any]] = {

@@ -5,10 +5,10 @@ from pathlib import Path
 import pytest
 from study_fixture import write_study
 
-from study_server import texts
+from study_server.guards.tokens import External
 from study_server.manifest import load_study
 from study_server.pages import consent_page
-from study_server.tokens import External
+from study_server.wording import texts
 
 SCREEN = "Before the pictures come checks of your screen"
 CARD, WEDGE, PLATES = "with a bank card", "dark and bright patches", "your colour vision"

@@ -6,9 +6,9 @@ import numpy as np
 import pytest
 from study_fixture import write_study
 
-from study_server.crowd import Crowd
 from study_server.manifest import BuiltStudy, load_study
-from study_server.raters import Effects, QuestionEffects, Rater, default_effects
+from study_server.simulation.crowd import Crowd
+from study_server.simulation.raters import Effects, QuestionEffects, Rater, default_effects
 
 STRONG = Effects(
     person_sd=1.1,

@@ -13,9 +13,9 @@ import fakesss.cli_study
 import fakesss.cli_survey  # noqa: F401  (all add their commands)
 from fakesss.cli import commands
 from fakesss.problem import BadInput
-from study_server.database import default_url, open_database
-from study_server.engines import parsed_url, shown_url, sqlite_url
 from study_server.serve import served
+from study_server.storage.database import default_url, open_database
+from study_server.storage.engines import parsed_url, shown_url, sqlite_url
 
 NAMES = ["is it red?", "a%41b", "a?mode=memory", "x#y", "a&b=c;d", "a@b:c", "[x]", "über 半", "100%", '\'s "x"', "a+b"]
 

@@ -15,11 +15,11 @@ import fakesss.cli_study
 import fakesss.cli_survey  # noqa: F401  (all add their commands)
 from fakesss.cli import commands
 from fakesss.problem import BadInput
-from study_server import schema
 from study_server.app import SECRET_VARIABLE, create_app
-from study_server.database import default_url, open_database
-from study_server.engines import connect, sqlite_url
 from study_server.serve import served
+from study_server.storage import schema
+from study_server.storage.database import default_url, open_database
+from study_server.storage.engines import connect, sqlite_url
 
 READERS = [
     ["export"],
@@ -68,7 +68,7 @@ def test_a_secret_of_the_environment_needs_no_database(study: Path, monkeypatch:
     write_study(study.parent / "elsewhere")
     with served(study.parent / "elsewhere") as url:
         monkeypatch.setenv(SECRET_VARIABLE, "a secret of the environment")
-    monkeypatch.setattr("study_server.walk.PATIENCE_S", 0.0)
+    monkeypatch.setattr("study_server.simulation.walk.PATIENCE_S", 0.0)
     assert url in refused(["simulate", "--url", url], study)
 
 

@@ -12,10 +12,10 @@ from sqlalchemy import Connection, event, insert, select, text, update
 from sqlalchemy.exc import DatabaseError, OperationalError
 
 from fakesss.problem import BadInput
-from study_server import schema
 from study_server.announcement import warnings
-from study_server.database import Database, is_writable, open_database, remembered
-from study_server.retries import TRIES
+from study_server.storage import schema
+from study_server.storage.database import Database, is_writable, open_database, remembered
+from study_server.storage.retries import TRIES
 
 values = schema.meta.c.value
 
@@ -59,7 +59,7 @@ def test_without_the_driver_one_sentence_says_what_to_install(postgres_url: str)
 import sys
 sys.modules["psycopg"] = None
 from fakesss.problem import BadInput
-from study_server.database import open_database
+from study_server.storage.database import open_database
 try:
     open_database(sys.argv[1])
 except BadInput as problem:

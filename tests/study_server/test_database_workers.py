@@ -15,10 +15,10 @@ from waiting import until
 
 from fakesss.problem import BadInput
 from study_server.app import admin_secret
-from study_server.export import export_ratings
+from study_server.exports.export import export_ratings
 from study_server.manifest import load_study
 from study_server.serve import serve
-from study_server.simulate import simulate
+from study_server.simulation.simulate import simulate
 
 
 def is_free(port: int) -> bool:

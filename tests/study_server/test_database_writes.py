@@ -10,8 +10,8 @@ from database_works import adding, keys, refused
 from sqlalchemy import func, select
 from sqlalchemy.exc import IntegrityError
 
-from study_server import schema
-from study_server.database import Database, open_database, reason, remembered
+from study_server.storage import schema
+from study_server.storage.database import Database, open_database, reason, remembered
 
 
 @pytest.fixture
@@ -82,8 +82,8 @@ def test_a_process_that_ends_has_written_what_waited(database_url: str, ending: 
     program = f"""
 import sys
 from sqlalchemy import insert
-from study_server import group_commit, schema
-from study_server.database import open_database
+from study_server.storage import group_commit, schema
+from study_server.storage.database import open_database
 database = open_database(sys.argv[1])
 for number in range(300):
     values = {{"key": f"row {{number}}", "value": ""}}

@@ -19,7 +19,7 @@ from stored import sound, sound_copy
 from study_fixture import write_study
 from survey_client import Participant
 
-from study_server.database import default_url
+from study_server.storage.database import default_url
 
 NOT_SAVED = "This could not be saved just now; please try again in a moment."
 PAGE = 4096

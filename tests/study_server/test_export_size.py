@@ -19,11 +19,11 @@ from survey_client import Participant
 
 from fakesss.problem import BadInput
 from study_server.app import admin_secret
-from study_server.codebook import TABLES
-from study_server.database import default_url, open_database
-from study_server.engines import parsed_url
-from study_server.export import export_ratings
+from study_server.exports.codebook import TABLES
+from study_server.exports.export import export_ratings
 from study_server.serve import served
+from study_server.storage.database import default_url, open_database
+from study_server.storage.engines import parsed_url
 
 MOST_MB = 8
 """What the larger export may need beyond the smaller one: buffers of the database and the allocator's whims."""
@@ -33,9 +33,9 @@ import json, re, sys, tempfile
 from pathlib import Path
 import httpx
 from study_server.app import admin_secret
-from study_server.database import default_url, open_database
-from study_server.export import export_ratings
-from study_server.psych_ds import export_psych_ds
+from study_server.storage.database import default_url, open_database
+from study_server.exports.export import export_ratings
+from study_server.exports.psych_ds import export_psych_ds
 from study_server.serve import served
 
 def memory_mb(kind):

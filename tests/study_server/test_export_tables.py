@@ -15,16 +15,16 @@ from study_fixture import write_study
 from survey_client import ABOUT, Participant
 
 from fakesss.problem import BadInput
-from study_server import schema
 from study_server.answers import Answer, Display, Posted
-from study_server.cells import FORMULA_STARTS, ROWS_AT_ONCE, cell, csv_text, iso
-from study_server.codebook import TABLES, WIDE, columns_of
-from study_server.columns import PARTICIPANTS, RATINGS
-from study_server.export import ROWS, export_ratings, snapshot
+from study_server.exports.cells import FORMULA_STARTS, ROWS_AT_ONCE, cell, csv_text, iso
+from study_server.exports.codebook import TABLES, WIDE, columns_of
+from study_server.exports.columns import PARTICIPANTS, RATINGS
+from study_server.exports.export import ROWS, export_ratings, snapshot
 from study_server.manifest import load_study
-from study_server.raters import Effects, QuestionEffects, default_effects, load_effects
 from study_server.serve import served
 from study_server.settings import AboutField, Question, Survey, check_survey
+from study_server.simulation.raters import Effects, QuestionEffects, default_effects, load_effects
+from study_server.storage import schema
 
 DOCS = Path(__file__).parents[2] / "docs"
 Exported = Callable[..., list[dict[str, str]]]

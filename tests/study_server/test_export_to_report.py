@@ -17,7 +17,7 @@ from analysis.levels import from_ratings
 from analysis.plan import AnalysisPlan, Exclusions
 from analysis.ratings import is_check, is_first_showing, is_repeat, read_ratings
 from analysis.sample import draw_sample
-from study_server.export import export_ratings
+from study_server.exports.export import export_ratings
 from study_server.serve import served
 
 PEOPLE = 6

@@ -19,13 +19,13 @@ from waiting import until
 import fakesss.cli_survey  # noqa: F401  (adds the command)
 from fakesss.cli import commands
 from fakesss.problem import BadInput
-from study_server import schema
 from study_server.app import admin_secret
-from study_server.database import default_url, open_database, secret
-from study_server.engines import parsed_url
-from study_server.export import export_ratings
-from study_server.forget import forget, scrub_file
+from study_server.exports.export import export_ratings
 from study_server.serve import served
+from study_server.storage import schema
+from study_server.storage.database import default_url, open_database, secret
+from study_server.storage.engines import parsed_url
+from study_server.storage.forget import forget, scrub_file
 
 ABOUT_FIELDS = [
     {"name": "age", "text": "Age?", "choices": ["18-24", "25-34"]},
@@ -164,7 +164,7 @@ def gone(study: Path, token: str) -> bool:
 
 
 def test_a_reader_that_holds_old_bytes_is_told_of(study: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("study_server.forget.BUSY_TIMEOUT_S", 0.2)
+    monkeypatch.setattr("study_server.storage.forget.BUSY_TIMEOUT_S", 0.2)
     with served(study) as url:
         take_part_plainly(url)
     file = study / "ratings.sqlite"

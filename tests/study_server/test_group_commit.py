@@ -13,10 +13,10 @@ from database_works import Work, adding, keys, refused
 from sqlalchemy import Connection, event, func, insert, select, text
 from sqlalchemy.exc import DatabaseError, IntegrityError, OperationalError
 
-from study_server import group_commit, schema
-from study_server.database import Database, open_database
-from study_server.engines import sqlite_url
-from study_server.group_commit import GROUP_WORKS
+from study_server.storage import group_commit, schema
+from study_server.storage.database import Database, open_database
+from study_server.storage.engines import sqlite_url
+from study_server.storage.group_commit import GROUP_WORKS
 
 
 @pytest.fixture

@@ -21,13 +21,13 @@ from stored import sound
 from study_fixture import write_study
 from survey_client import Participant
 
-from study_server import web_safety
 from study_server.app import admin_secret
-from study_server.database import default_url
+from study_server.guards import web_safety
+from study_server.guards.web_safety import BODY_LIMIT
 from study_server.manifest import load_study
 from study_server.serve import served
-from study_server.simulate import simulate
-from study_server.web_safety import BODY_LIMIT
+from study_server.simulation.simulate import simulate
+from study_server.storage.database import default_url
 
 
 @pytest.fixture(scope="module")

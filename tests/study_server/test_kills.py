@@ -16,8 +16,8 @@ from study_fixture import write_study
 from survey_client import Participant
 from waiting import until
 
-from study_server.database import default_url
 from study_server.serve import START_S
+from study_server.storage.database import default_url
 
 
 @pytest.mark.parametrize("kills", [2, pytest.param(100, marks=[pytest.mark.long, pytest.mark.timeout(1200)])])

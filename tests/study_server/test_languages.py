@@ -17,13 +17,13 @@ from survey_client import JSON, Participant
 from translated_study import TEXTS, tables, translated_study
 
 from fakesss.problem import BadInput
-from study_server.catalogues import LANGUAGES, remade
-from study_server.database import default_url, open_database
-from study_server.language import LOCALES, by_preference, catalogue
 from study_server.participant import STRANGER
 from study_server.serve import served
 from study_server.settings import check_survey
 from study_server.site import HERE
+from study_server.storage.database import default_url, open_database
+from study_server.wording.catalogues import LANGUAGES, remade
+from study_server.wording.language import LOCALES, by_preference, catalogue
 
 HTML = {"Accept": "text/html"}
 FOR_RESEARCHERS = {"admin.html", "close.html", "login.html", "tables.html"}

@@ -9,8 +9,8 @@ import httpx
 import pytest
 from survey_client import Participant
 
+from study_server.guards.web_safety import BODY_LIMIT
 from study_server.steps import LONGEST_TEXT
-from study_server.web_safety import BODY_LIMIT
 
 LONGEST = {
     "latin": "x" * LONGEST_TEXT,

@@ -9,9 +9,9 @@ from study_fixture import write_study
 
 from study_server.app import admin_secret
 from study_server.manifest import load_study
-from study_server.raters import Effects, Rater
 from study_server.serve import served
-from study_server.simulate import simulate
+from study_server.simulation.raters import Effects, Rater
+from study_server.simulation.simulate import simulate
 
 Rows = Callable[..., list[dict[str, str]]]
 

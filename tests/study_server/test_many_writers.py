@@ -13,10 +13,10 @@ from stored import sound
 from study_fixture import write_study
 from survey_client import Participant
 
-from study_server import engines
-from study_server.database import default_url
-from study_server.engines import sqlite_url
 from study_server.serve import served
+from study_server.storage import engines
+from study_server.storage.database import default_url
+from study_server.storage.engines import sqlite_url
 
 HOLD = """
 import sqlite3, sys

@@ -7,7 +7,7 @@ from collections.abc import Callable
 
 from survey_client import Participant
 
-from study_server.tokens import pseudonym
+from study_server.guards.tokens import pseudonym
 
 SALT = "salt"
 

@@ -18,8 +18,8 @@ from sqlalchemy import create_engine, text
 from survey_client import ABOUT, Participant
 
 from study_server.app import admin_secret
-from study_server.database import default_url
-from study_server.engines import DRIVERS
+from study_server.storage.database import default_url
+from study_server.storage.engines import DRIVERS
 
 BOTH_STREAMS = ["sh", "-c", 'exec "$@" 1>&2', "sh"]
 ADDRESS = "203.0.113.9"

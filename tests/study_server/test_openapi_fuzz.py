@@ -30,8 +30,8 @@ from study_fixture import write_study
 from survey_client import ABOUT, JSON, Participant
 
 from study_server.app import create_app
+from study_server.guards.rate_limit import Limits
 from study_server.openapi import ADDRESSES
-from study_server.rate_limit import Limits
 from study_server.serve import running
 
 CHECKS = [

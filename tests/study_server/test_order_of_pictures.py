@@ -10,7 +10,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from study_server.assignment import MOST_ROWS, Design, Order, Trial
+from study_server.ordering.assignment import MOST_ROWS, Design, Order, Trial
 
 ks = st.integers(1, 16)
 seeds = st.integers(0, 2**32)

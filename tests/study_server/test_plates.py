@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from numpy.typing import NDArray
 
-from study_server.plates import (
+from study_server.screen.plates import (
     DIGITS,
     LMS_FROM_RGB,
     NOISE,

@@ -11,12 +11,12 @@ import pytest
 from study_fixture import write_study
 from survey_client import JSON, Participant
 
-from study_server import tokens
-from study_server.database import default_url, open_database
 from study_server.gates import Gate, set_gate
+from study_server.guards import tokens
+from study_server.guards.tokens import External, belongs_to, is_valid, make_token
 from study_server.manifest import load_study
 from study_server.serve import served
-from study_server.tokens import External, belongs_to, is_valid, make_token
+from study_server.storage.database import default_url, open_database
 
 Rows = Callable[..., list[dict[str, str]]]
 

@@ -22,13 +22,13 @@ from psych_ds_rules import DATA_FILE, broken_rules, data_files
 from study_fixture import write_study
 
 from study_server.app import admin_secret
-from study_server.database import open_database
-from study_server.engines import sqlite_url
-from study_server.export import export_ratings
+from study_server.exports.export import export_ratings
+from study_server.exports.psych_ds import DATA, export_psych_ds, name_of
 from study_server.manifest import load_study
-from study_server.psych_ds import DATA, export_psych_ds, name_of
-from study_server.schema import sessions
 from study_server.serve import served
+from study_server.storage.database import open_database
+from study_server.storage.engines import sqlite_url
+from study_server.storage.schema import sessions
 
 CODES = {"completion_code": "SECRET1", "prolific": {"completed": "SECRET2"}, "return_url": "https://x.org/?cc=SECRET3"}
 

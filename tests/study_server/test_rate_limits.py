@@ -12,9 +12,17 @@ from study_fixture import write_study
 from survey_client import JSON, Participant
 
 from study_server.app import create_app
-from study_server.rate_limit import AT_ONCE, PER_SECOND, SMALLEST_SWEEP, STARTS_AT_ONCE, Buckets, Limits, retry_after
+from study_server.guards.rate_limit import (
+    AT_ONCE,
+    PER_SECOND,
+    SMALLEST_SWEEP,
+    STARTS_AT_ONCE,
+    Buckets,
+    Limits,
+    retry_after,
+)
+from study_server.guards.tokens import make_token
 from study_server.serve import running
-from study_server.tokens import make_token
 
 HELD_KEY_PER_S = 100 / 3
 """The fastest a keyboard repeats a key that is held down."""

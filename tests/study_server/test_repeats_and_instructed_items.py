@@ -10,8 +10,8 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from study_server.assignment import Design, Trial, most_checks, with_checks
-from study_server.repeats import at_the_ends, insert_repeats, least_between, matched
+from study_server.ordering.assignment import Design, Trial, most_checks, with_checks
+from study_server.ordering.repeats import at_the_ends, insert_repeats, least_between, matched
 
 seeds = st.integers(0, 2**32)
 

@@ -33,7 +33,7 @@ def test_a_port_in_use(study: Path) -> None:
 
 
 def test_the_survey_needs_no_renderer() -> None:
-    program = "import sys, study_server.serve, study_server.simulate; print(*sys.modules)"
+    program = "import sys, study_server.serve, study_server.simulation.simulate; print(*sys.modules)"
     loaded = subprocess.run([sys.executable, "-c", program], capture_output=True, text=True, check=True).stdout.split()
     assert {name for name in loaded if name.startswith("fakesss")} == {"fakesss", "fakesss.problem"}
     assert not {"moderngl", "embreex", "trimesh", "stimuli", "analysis"} & set(loaded)

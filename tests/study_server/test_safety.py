@@ -14,11 +14,11 @@ from study_fixture import write_study
 from survey_client import JSON, Participant
 from waiting import until
 
-from study_server import schema
 from study_server.app import create_app
+from study_server.guards.web_safety import BODY_LIMIT, TooLarge
 from study_server.health import REMEMBERED_S
 from study_server.serve import running, served
-from study_server.web_safety import BODY_LIMIT, TooLarge
+from study_server.storage import schema
 
 
 @pytest.mark.parametrize("path", ["/health", "/admin", "/nothing", "/static/survey.css"])

@@ -20,8 +20,8 @@ from survey_client import ABOUT, JSON, Participant
 
 from study_server.app import admin_secret
 from study_server.counts import STATES
-from study_server.engines import parsed_url
 from study_server.serve import served
+from study_server.storage.engines import parsed_url
 
 ABOUT_FIELDS = [
     {"name": "age", "text": "Age?", "choices": ["under 18", "25-34"], "required": True, "screen_out": ["under 18"]},

@@ -13,9 +13,9 @@ from hypothesis import strategies as st
 from study_fixture import write_study
 from survey_client import Participant
 
-from study_server import screen_check
-from study_server.plates import PLATES
-from study_server.screen_check import ANSWER, CARD_MM, DERIVED, MATCHES, PARTS, asked, columns, found, gamma
+from study_server.screen import screen_check
+from study_server.screen.plates import PLATES
+from study_server.screen.screen_check import ANSWER, CARD_MM, DERIVED, MATCHES, PARTS, asked, columns, found, gamma
 from study_server.serve import served
 
 HERE = Path(screen_check.__file__).parent

@@ -8,14 +8,14 @@ from study_fixture import write_study
 from survey_client import Participant
 
 from fakesss.problem import BadInput
-from study_server.adoption import design_of
 from study_server.announcement import announcement
 from study_server.answers import scales_of
 from study_server.app import create_app
 from study_server.manifest import load_study
 from study_server.serve import served
 from study_server.settings import check_survey
-from study_server.texts import CHECK
+from study_server.storage.adoption import design_of
+from study_server.wording.texts import CHECK
 
 SCALES = [{"name": "a", "text": "A?", "scale": 7}, {"name": "b", "text": "B?", "scale": 3}]
 

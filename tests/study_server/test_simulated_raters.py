@@ -14,13 +14,13 @@ from survey_client import Participant
 import fakesss.cli_study  # noqa: F401  (adds the command)
 from fakesss.cli import commands
 from fakesss.problem import BadInput
-from study_server import walk
 from study_server.app import admin_secret
-from study_server.export import mode_to_analyse
+from study_server.exports.export import mode_to_analyse
 from study_server.manifest import BuiltStudy, load_study
-from study_server.raters import Effects, QuestionEffects, Rater, default_effects, load_effects, shift
 from study_server.serve import served
-from study_server.simulate import completing, quitting, simulate
+from study_server.simulation import walk
+from study_server.simulation.raters import Effects, QuestionEffects, Rater, default_effects, load_effects, shift
+from study_server.simulation.simulate import completing, quitting, simulate
 from study_server.site import Mode
 
 Exported = Callable[..., list[dict[str, str]]]

@@ -12,8 +12,9 @@ import httpx
 import pytest
 from survey_client import JSON, Participant
 
-from study_server import prompt, web_safety
+from study_server import prompt
 from study_server.app import create_app
+from study_server.guards import web_safety
 from study_server.serve import running, served
 
 SOON_S = 0.3

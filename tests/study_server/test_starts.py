@@ -14,8 +14,8 @@ from survey_client import JSON
 
 from study_server import sessions
 from study_server.app import create_app
+from study_server.guards.tokens import make_token
 from study_server.serve import served
-from study_server.tokens import make_token
 
 
 async def begin(client: httpx.AsyncClient) -> None:

@@ -6,10 +6,10 @@ import pytest
 from study_fixture import write_study
 
 from fakesss.problem import BadInput
-from study_server.language import words as words_of
 from study_server.manifest import load_study
 from study_server.pages import instructions
 from study_server.settings import check_survey
+from study_server.wording.language import words as words_of
 
 QUESTION = {"name": "translucent", "text": "The object looks translucent."}
 

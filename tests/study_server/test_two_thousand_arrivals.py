@@ -25,8 +25,8 @@ from study_fixture import write_study
 
 from study_server import counts, sessions
 from study_server.app import create_app
+from study_server.guards.tokens import make_token
 from study_server.site import Site
-from study_server.tokens import make_token
 
 MINUTE = 60.0
 START = 1_800_000_000.0

@@ -11,9 +11,9 @@ from survey_client import Participant
 
 from fakesss.problem import BadInput
 from study_server.app import create_app
-from study_server.database import default_url
-from study_server.export import export_ratings, left_out
+from study_server.exports.export import export_ratings, left_out
 from study_server.serve import served
+from study_server.storage.database import default_url
 
 
 def rated(study: Path, out: Path, mode: str = "live", url: str | None = None) -> int:

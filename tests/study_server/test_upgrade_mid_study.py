@@ -21,9 +21,9 @@ from study_fixture import write_study
 from survey_client import Participant
 from waiting import until
 
-from study_server.database import default_url
-from study_server.engines import parsed_url
 from study_server.serve import served
+from study_server.storage.database import default_url
+from study_server.storage.engines import parsed_url
 
 RELEASE_1 = Path(__file__).parents[1] / "data" / "study_of_release_1"
 

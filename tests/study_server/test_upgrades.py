@@ -13,11 +13,11 @@ import pytest
 from survey_client import ABOUT, Participant
 
 from fakesss.problem import BadInput
-from study_server import schema
 from study_server.app import create_app
-from study_server.database import Database, open_database
-from study_server.engines import sqlite_url
 from study_server.serve import served
+from study_server.storage import schema
+from study_server.storage.database import Database, open_database
+from study_server.storage.engines import sqlite_url
 
 Rows = Callable[..., list[dict[str, str]]]
 

@@ -10,15 +10,15 @@ from typing import Any
 
 from sqlalchemy import Connection, RowMapping, select
 
-from study_server import schema
-from study_server.cells import iso
-from study_server.columns import DISPLAYS, RATINGS, STIMULI
 from study_server.counts import summaries
+from study_server.exports.cells import iso
+from study_server.exports.columns import DISPLAYS, RATINGS, STIMULI
+from study_server.guards.tokens import pseudonym
 from study_server.manifest import BuiltStudy
 from study_server.sessions import presentations, release_s, sessions
 from study_server.settings import CHECK_NAME
 from study_server.site import Mode
-from study_server.tokens import pseudonym
+from study_server.storage import schema
 
 AT_ONCE = 20
 """Sessions read with one query a table: fewer queries, and still little memory."""

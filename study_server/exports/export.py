@@ -7,16 +7,17 @@ from pathlib import Path
 from sqlalchemy import and_, func, select
 
 from fakesss.problem import BadInput
-from study_server import export_rows, schema
-from study_server.cells import csv_text
-from study_server.codebook import TABLES, codebook_rows, columns_of
-from study_server.database import open_existing, secret
-from study_server.engines import shown_url
-from study_server.export_rows import Row, Source
+from study_server.exports import export_rows
+from study_server.exports.cells import csv_text
+from study_server.exports.codebook import TABLES, codebook_rows, columns_of
+from study_server.exports.export_rows import Row, Source
 from study_server.manifest import load_study
 from study_server.sessions import presentations, sessions
 from study_server.site import Mode
-from study_server.staging import staged
+from study_server.storage import schema
+from study_server.storage.database import open_existing, secret
+from study_server.storage.engines import shown_url
+from study_server.storage.staging import staged
 
 ROWS: dict[str, Callable[[Source], Iterator[Row]]] = {
     "ratings": export_rows.rating_rows,

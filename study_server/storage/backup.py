@@ -20,9 +20,9 @@ from typing import Any, BinaryIO
 from sqlalchemy import URL
 
 from fakesss.problem import BadInput
-from study_server.database import chosen_url
-from study_server.engines import BUSY_TIMEOUT_S, parsed_url, shown_url, sqlite_file
-from study_server.staging import staged
+from study_server.storage.database import chosen_url
+from study_server.storage.engines import BUSY_TIMEOUT_S, parsed_url, shown_url, sqlite_file
+from study_server.storage.staging import staged
 
 
 def file_name(now: float) -> str:

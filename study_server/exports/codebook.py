@@ -4,9 +4,8 @@ from collections.abc import Callable, Iterator, Mapping
 from dataclasses import replace
 from typing import Any
 
-from study_server import screen_check
-from study_server.cells import cell
-from study_server.columns import (
+from study_server.exports.cells import cell
+from study_server.exports.columns import (
     CLIENT,
     CODEBOOK,
     DISPLAYS,
@@ -19,8 +18,9 @@ from study_server.columns import (
     Column,
     flag,
 )
-from study_server.export_rows import Row, Source, wide_name
+from study_server.exports.export_rows import Row, Source, wide_name
 from study_server.manifest import BuiltStudy
+from study_server.screen import screen_check
 from study_server.settings import CHECK_NAME
 
 WIDE = ("session", "participant", "mode", "status", "started_at", "order_row", "language", "checks_failed")

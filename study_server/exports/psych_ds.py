@@ -15,15 +15,15 @@ from datetime import UTC, datetime
 from pathlib import Path
 from typing import IO, Any
 
-from study_server.cells import cell, csv_text
-from study_server.codebook import columns_of, described
-from study_server.columns import CLIENT, CODEBOOK, Column
-from study_server.dataset_words import changes_text, counted, description_of, readme_text
-from study_server.export import ROWS, snapshot
-from study_server.export_rows import Row, Source
+from study_server.exports.cells import cell, csv_text
+from study_server.exports.codebook import columns_of, described
+from study_server.exports.columns import CLIENT, CODEBOOK, Column
+from study_server.exports.dataset_words import changes_text, counted, description_of, readme_text
+from study_server.exports.export import ROWS, snapshot
+from study_server.exports.export_rows import Row, Source
 from study_server.manifest import BuiltStudy, study_changed
 from study_server.site import Mode
-from study_server.staging import staged
+from study_server.storage.staging import staged
 
 CONTEXT = "https://schema.org/"
 VERSION = "1.5.0"

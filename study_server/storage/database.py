@@ -17,12 +17,12 @@ from sqlalchemy.dialects import postgresql, sqlite
 from sqlalchemy.exc import DatabaseError, TimeoutError
 
 from fakesss.problem import BadInput
-from study_server import schema
-from study_server.engines import AT_ONCE, connect, empty_log, parsed_url, shown_url, sqlite_file, sqlite_url
-from study_server.foreign_tables import check_columns, holds_ours
-from study_server.group_commit import LOG_WAIT_S, GroupCommit
-from study_server.retries import Retries
-from study_server.upgrades import upgrade
+from study_server.storage import schema
+from study_server.storage.engines import AT_ONCE, connect, empty_log, parsed_url, shown_url, sqlite_file, sqlite_url
+from study_server.storage.foreign_tables import check_columns, holds_ours
+from study_server.storage.group_commit import LOG_WAIT_S, GroupCommit
+from study_server.storage.retries import Retries
+from study_server.storage.upgrades import upgrade
 
 T = TypeVar("T")
 

@@ -13,7 +13,7 @@ from babel.messages.pofile import read_po
 
 from study_server.settings import Survey, SurveySettings
 
-LOCALES = Path(__file__).parent / "locales"
+LOCALES = Path(__file__).parent.parent / "locales"
 
 
 @dataclass(frozen=True)

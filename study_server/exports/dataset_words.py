@@ -7,9 +7,9 @@ from datetime import UTC, datetime
 from importlib.metadata import version
 from typing import Any
 
-from study_server.cells import iso
 from study_server.counts import STATES
-from study_server.export_rows import Source
+from study_server.exports.cells import iso
+from study_server.exports.export_rows import Source
 from study_server.manifest import BuiltStudy
 
 HOLDS = {

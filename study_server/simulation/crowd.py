@@ -1,4 +1,4 @@
-"""Answers of many simulated raters at once, for studies simulated by the thousand: the model of `study_server.raters`.
+"""Answers of many simulated raters at once, for studies simulated by the thousand: the model of `raters`.
 
 The random numbers are others than those of `Rater`, which has a generator for each answer so that answers do not depend
 on the order of pictures; the distribution is the same.
@@ -11,8 +11,8 @@ import numpy.typing as npt
 from scipy import stats
 
 from study_server.manifest import BuiltStudy
-from study_server.raters import Effects, expected
 from study_server.settings import Question
+from study_server.simulation.raters import Effects, expected
 
 Floats = npt.NDArray[np.float64]
 Answers = npt.NDArray[np.float32]

@@ -10,9 +10,9 @@ from typing import Any
 import httpx
 
 from fakesss.problem import BadInput
-from study_server import screen_check
-from study_server.raters import Rater
+from study_server.screen import screen_check
 from study_server.settings import CHECK_NAME
+from study_server.simulation.raters import Rater
 
 PATIENCE_S = 120.0
 """How long a server that does not answer is waited for: long enough for a restart or an upgrade."""

@@ -15,11 +15,12 @@ from typing import Any
 from sqlalchemy import Connection, delete, func, insert, select, text, update
 
 from fakesss.problem import BadInput
-from study_server import gates, schema
-from study_server.copies import delete_report, exports_in
-from study_server.database import Database, open_existing
-from study_server.engines import BUSY_TIMEOUT_S
+from study_server import gates
 from study_server.happenings import FORGOTTEN
+from study_server.storage import schema
+from study_server.storage.copies import delete_report, exports_in
+from study_server.storage.database import Database, open_existing
+from study_server.storage.engines import BUSY_TIMEOUT_S
 
 KEYS = ("salt", "signing_key")
 """Made anew at the next start: with the old ones a name could be turned into its pseudonym, or into its address."""

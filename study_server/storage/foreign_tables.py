@@ -5,7 +5,7 @@ from collections.abc import Iterable
 from sqlalchemy import Connection, inspect, select
 
 from fakesss.problem import BadInput
-from study_server import schema
+from study_server.storage import schema
 
 
 def holds_ours(connection: Connection, shown: str) -> bool:

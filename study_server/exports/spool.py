@@ -14,7 +14,7 @@ from typing import IO
 from fastapi import Request, Response
 from fastapi.responses import StreamingResponse
 
-from study_server.export_rows import Source
+from study_server.exports.export_rows import Source
 from study_server.site import Mode, site_of, sorry
 
 PIECE_BYTES = 1 << 18

@@ -9,7 +9,7 @@ from alembic.migration import MigrationContext
 from alembic.operations import Operations
 from sqlalchemy import JSON, Boolean, Column, Connection, Double, Integer, String, Table, column, select, table, update
 
-from study_server import schema
+from study_server.storage import schema
 
 
 def upgrade(connection: Connection, version: str) -> str:

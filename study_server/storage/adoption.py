@@ -7,10 +7,10 @@ from dataclasses import asdict
 from sqlalchemy import Connection, and_, func, insert, select, update
 
 from fakesss.problem import BadInput
-from study_server import schema
-from study_server.assignment import Design
-from study_server.database import Database
 from study_server.manifest import BuiltStudy
+from study_server.ordering.assignment import Design
+from study_server.storage import schema
+from study_server.storage.database import Database
 
 
 def adopt_study(database: Database, study: BuiltStudy, shown: str) -> None:

@@ -1,4 +1,4 @@
-"""Remakes locales/*.po from what participants read: `python -m study_server.catalogues` (`make catalogues`).
+"""Remakes locales/*.po from what participants read: `python -m study_server.wording.catalogues` (`make catalogues`).
 
 Texts are marked by {% trans %} in templates and by `N_` and `.plural` in Python; admin pages are in English and not
 marked. What is new gets an empty translation, for somebody who speaks the language to fill in; what is gone is dropped.
@@ -12,10 +12,10 @@ from babel.messages import Catalog
 from babel.messages.extract import extract_from_dir
 from babel.messages.pofile import read_po, write_po
 
-from study_server.language import LOCALES
+from study_server.wording.language import LOCALES
 
-HERE = Path(__file__).parent
-METHODS = [("*.py", "python"), ("templates/*.html", "jinja2")]
+HERE = Path(__file__).parent.parent
+METHODS = [("**.py", "python"), ("templates/*.html", "jinja2")]
 OPTIONS = {"templates/*.html": {"trimmed": "true", "silent": "false"}}
 KEYWORDS = {"N_": None, "plural": (1, 2), "gettext": None, "_": None, "ngettext": (1, 2)}
 LANGUAGES = ("de", "es", "fr")

@@ -17,7 +17,7 @@ from typing import Any, TypeVar
 
 from sqlalchemy import Connection, Engine
 
-from study_server.engines import empty_log
+from study_server.storage.engines import empty_log
 
 GROUP_WORKS = 64
 """The most works in one commit."""

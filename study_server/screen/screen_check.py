@@ -12,9 +12,9 @@ from typing import Any
 import numpy as np
 from sqlalchemy import Connection, RowMapping
 
-from study_server.columns import Column, flag
+from study_server.exports.columns import Column, flag
 from study_server.manifest import BuiltStudy
-from study_server.plates import PLATES
+from study_server.screen.plates import PLATES
 from study_server.sessions import advance
 
 CARD_MM = (85.60, 53.98)

@@ -13,7 +13,7 @@ from pathlib import Path
 
 from fakesss.problem import BadInput
 from study_server.site import Site
-from study_server.staging import staged
+from study_server.storage.staging import staged
 
 log = logging.getLogger(__name__)
 

@@ -14,8 +14,8 @@ from tqdm import tqdm
 from fakesss.problem import BadInput
 from study_server.manifest import BuiltStudy
 from study_server.pages import trials
-from study_server.raters import Effects, Rater, default_effects, load_effects
-from study_server.walk import Walked, patiently, walk
+from study_server.simulation.raters import Effects, Rater, default_effects, load_effects
+from study_server.simulation.walk import Walked, patiently, walk
 
 STARTED, COMPLETED = 44, 38
 """How many begin and how many of them finish, unless told: a class of students."""

@@ -7,8 +7,8 @@ from math import gcd, lcm
 from random import Random
 from typing import Literal
 
-from study_server.repeats import insert_repeats
-from study_server.williams import shuffled_rows, williams_row, williams_rows
+from study_server.ordering.repeats import insert_repeats
+from study_server.ordering.williams import shuffled_rows, williams_row, williams_rows
 
 Order = Literal["latin-square", "random"]
 Blocks = Literal["together", "by-question"]

@@ -3,7 +3,7 @@
     answer = round(intercept + sum of effects of the picture's levels + person + noise), clipped to 1 .. scale
 
 `person` is drawn once for each rater and question, `noise` for each answer, both normal. It is not a model of how
-people use a scale: no anchoring, no fatigue, no learning, no order effects. `study_server.crowd` draws from the same
+people use a scale: no anchoring, no fatigue, no learning, no order effects. `simulation.crowd` draws from the same
 model for many raters at once.
 """
 

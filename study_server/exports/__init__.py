@@ -1,0 +1,1 @@
+"""What leaves the survey: tables, codebook, Psych-DS."""

@@ -1,0 +1,1 @@
+"""Who sees what when: a pure function of the study and its seed."""

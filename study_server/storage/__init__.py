@@ -1,0 +1,1 @@
+"""Where answers are kept: SQLite or PostgreSQL, their upgrades, copies and deletions."""

@@ -1,0 +1,1 @@
+"""What participants read, and in which language."""
