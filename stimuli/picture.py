@@ -29,6 +29,7 @@ TIMES = ("bench", "bench_bake", "bench_tables", "direct", "direct_light", "savin
 LOOKS = ("inspect", "views", "contact_sheet", "explanation", "graph_drawing", "graph_layout")
 PLOTS = ("profile_plot", "relief", "lighting_terms")
 CHECKS = ("browser", "depth_checks", "doctor", "hard_edges", "reference")
+ROOMS = ("accuracy",)  # folders of nothing but such
 NOT_DRAWING = frozenset((*COMMANDS, *TIMES, *LOOKS, *PLOTS, *CHECKS))
 # What thickness does not depend on; a sweep of any of it measures thickness once.
 ELSEWHERE = ("object", "light", "lights", "shadow", "exposure", "background", "alpha", "occlusion", "blur")
@@ -145,4 +146,4 @@ def drawing_files() -> list[Path]:
     """The source that pictures and their cues come from: modules, shaders, this file and the cues' own."""
     root = Path(fakesss.__file__).parent
     ours = sorted([*root.rglob("*.py"), *root.rglob("glsl/*"), Path(__file__), Path(__file__).with_name("cues.py")])
-    return [path for path in ours if path.is_file() and path.stem not in NOT_DRAWING]
+    return [path for path in ours if path.is_file() and path.stem not in NOT_DRAWING and path.parent.name not in ROOMS]
