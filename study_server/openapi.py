@@ -138,6 +138,7 @@ def described(app: FastAPI) -> Callable[[], Schema]:
     plain = app.openapi
 
     def openapi() -> Schema:
+        """FastAPI's description with our schemas, the secret and what each address may reply."""
         description = plain()
         components = description.setdefault("components", {})
         components.setdefault("schemas", {}).update(SCHEMAS)

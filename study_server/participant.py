@@ -176,6 +176,7 @@ async def ratings(request: Request, site: AtSite, token: Token, sent: answers.Po
     now = time.time()
 
     def save(connection: Connection) -> dict[str, Any]:
+        """All of it in one transaction: checked, stored, and what comes next."""
         session = known(request, connection, token, lock=True)
         ahead = pages.looked_ahead(site.study)
         near = sessions.near(connection, session["id"], sent.place, 1 + ahead)

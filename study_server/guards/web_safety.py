@@ -154,6 +154,7 @@ def limited(receive: Receive) -> Callable[[], Awaitable[MutableMapping[str, Any]
     until = asyncio.get_running_loop().time() + BODY_S
 
     async def receive_limited() -> Message:
+        """The next piece of the body, counted and in time."""
         nonlocal total, is_whole
         if is_whole:  # what comes now is that the browser has left
             return await receive()

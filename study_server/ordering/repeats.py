@@ -87,6 +87,7 @@ def matched(allowed: Mapping[str, Sequence[int]]) -> dict[int, str] | None:
     holder: dict[int, str] = {}
 
     def settle(name: str, tried: set[int]) -> bool:
+        """Whether `name` has a place now, its own or one whose holder could move."""
         for place in allowed[name]:
             if place not in holder:
                 holder[place] = name

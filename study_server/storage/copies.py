@@ -28,6 +28,7 @@ def strike_out(site: Site, session: str) -> None:
     """
 
     def strike() -> None:
+        """Later, on a thread that nobody waits for."""
         with site.reporter.lock if site.reporter else contextlib.nullcontext():
             for folder in sorted((site.study.folder / REPORT).glob("**/data")):
                 try:

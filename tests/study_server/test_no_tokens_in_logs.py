@@ -10,6 +10,7 @@ import signal
 import socket
 from collections.abc import Iterator
 from pathlib import Path
+from typing import Any
 
 import httpx
 import pytest
@@ -80,6 +81,29 @@ def raw_requests(server: ServerProcess, here: str) -> None:
         connection.recv(1000)
 
 
+def database_fails(database: str, client: httpx.Client, person: Participant, body: dict[str, Any], secret: str) -> None:
+    """At a save, at reading a page, and in the midst of one, with the private words in what fails."""
+    with broken(database, "ALTER TABLE ratings RENAME TO away", "ALTER TABLE away RENAME TO ratings"):
+        assert person.send(body).status_code == 503
+    with broken(database, "ALTER TABLE sessions RENAME TO away", "ALTER TABLE away RENAME TO sessions"):
+        assert client.get(person.here).status_code == 503
+        assert client.post(f"{person.here}/consent", data=PRIVATE).status_code == 503
+        assert client.get("/admin", headers={"Authorization": f"Bearer {secret}"}).status_code == 503
+    swap = "UPDATE presentations SET stimulus = "
+    with broken(database, f"{swap}'{COMMENT}' || stimulus", f"{swap}replace(stimulus, '{COMMENT}', '')"):
+        assert client.get(person.here).status_code == 500  # KeyError: 'a comment ...'
+
+
+def pictures_fail(study: Path, client: httpx.Client) -> None:
+    """A picture's file is away, then damaged."""
+    picture = study / "stimuli" / "img01.png"
+    address = f"/picture/{sha256_of(picture)}.png"
+    picture.unlink()
+    assert client.get(address).status_code == 503
+    picture.write_bytes(b"damaged")
+    assert client.get(address).status_code == 503
+
+
 @pytest.mark.parametrize(("kind", "workers"), [("sqlite", 1), ("postgres", 2)])
 def test_nobody_is_named(request: pytest.FixtureRequest, study: Path, tmp_path: Path, kind: str, workers: int) -> None:
     database = default_url(study) if kind == "sqlite" else str(request.getfixturevalue("postgres_url"))
@@ -101,20 +125,8 @@ def test_nobody_is_named(request: pytest.FixtureRequest, study: Path, tmp_path: 
         with httpx.Client(base_url=server.url, headers=headers, timeout=60) as client:
             bad_requests(client, other.here, secret)
             raw_requests(server, other.here)
-            with broken(database, "ALTER TABLE ratings RENAME TO away", "ALTER TABLE away RENAME TO ratings"):
-                assert person.send(body).status_code == 503
-            with broken(database, "ALTER TABLE sessions RENAME TO away", "ALTER TABLE away RENAME TO sessions"):
-                assert client.get(person.here).status_code == 503
-                assert client.post(f"{person.here}/consent", data=PRIVATE).status_code == 503
-                assert client.get("/admin", headers={"Authorization": f"Bearer {secret}"}).status_code == 503
-            swap = "UPDATE presentations SET stimulus = "
-            with broken(database, f"{swap}'{COMMENT}' || stimulus", f"{swap}replace(stimulus, '{COMMENT}', '')"):
-                assert client.get(person.here).status_code == 500  # KeyError: 'a comment ...'
-            picture = study / "stimuli" / "img01.png"
-            picture.rename(tmp_path / "away.png")
-            assert client.get(f"/picture/{sha256_of(tmp_path / 'away.png')}.png").status_code == 503
-            picture.write_bytes(b"damaged")
-            assert client.get(f"/picture/{sha256_of(tmp_path / 'away.png')}.png").status_code == 503
+            database_fails(database, client, person, body, secret)
+            pictures_fail(study, client)
             assert person.send(body).status_code == 200
             assert person.post("about", **ABOUT)["step"] == "trials"
             with socket.create_connection(("127.0.0.1", server.port)) as unfinished:
