@@ -5,12 +5,16 @@ database file, the seconds; standard input the recorded transactions as JSON; it
 """
 
 import json
+import os
+import platform
 import shutil
 import sqlite3
+import statistics
 import subprocess
 import sys
 import time
 from pathlib import Path
+from typing import Any
 
 Transaction = list[tuple[str, list[object]]]
 """SQL and values of one transaction."""
@@ -94,6 +98,32 @@ def saves_per_s(before: Path, transactions: list[Transaction], seconds: float) -
 def is_save(statements: Transaction) -> bool:
     """Whether ratings are stored in it."""
     return any("INTO ratings" in sql for sql, _ in statements)
+
+
+def sync_ms(folder: Path) -> float:
+    """What one fdatasync of a small write costs here: median of 200, ms."""
+    waits = []
+    with (folder / "sync").open("wb", buffering=0) as file:
+        for _ in range(200):
+            file.write(bytes(4096))
+            began = time.perf_counter()
+            os.fdatasync(file.fileno())
+            waits.append((time.perf_counter() - began) * 1000)
+    return statistics.median(waits)
+
+
+def machine(folder: Path) -> dict[str, Any]:
+    """Where this was measured."""
+    model = next((line.split(": ")[1].strip() for line in Path("/proc/cpuinfo").read_text().splitlines()
+                  if line.startswith("model name")), platform.machine())  # fmt: skip
+    return {
+        "processor": model,
+        "cores": len(os.sched_getaffinity(0)),
+        "python": platform.python_version(),
+        "sqlite": sqlite3.sqlite_version,
+        "sync_ms": round(sync_ms(folder), 3),
+        "load_before": os.getloadavg()[0],
+    }
 
 
 if __name__ == "__main__":

@@ -17,13 +17,10 @@ import csv
 import json
 import math
 import os
-import platform
-import sqlite3
 import statistics
 import subprocess
 import sys
 import tempfile
-import time
 from collections import Counter
 from collections.abc import Iterator
 from contextlib import ExitStack, contextmanager
@@ -33,7 +30,7 @@ from typing import Any
 
 import click
 from sqlalchemy import event
-from survey_disk import Transaction, is_save, slow_disk
+from survey_disk import Transaction, is_save, machine, slow_disk
 from survey_study import write_study
 
 from study_server.app import create_app
@@ -187,32 +184,6 @@ def people_at_once(row: Row, study: Path, folder: Path, sizes: list[int], median
             else:
                 results.append({"name": row.name, **told})
     return [{**result, **checked(study, row.database, acknowledged, folder)} for result in results]
-
-
-def sync_ms(folder: Path) -> float:
-    """What one fdatasync of a small write costs here: median of 200, ms."""
-    waits = []
-    with (folder / "sync").open("wb", buffering=0) as file:
-        for _ in range(200):
-            file.write(bytes(4096))
-            began = time.perf_counter()
-            os.fdatasync(file.fileno())
-            waits.append((time.perf_counter() - began) * 1000)
-    return statistics.median(waits)
-
-
-def machine(folder: Path) -> dict[str, Any]:
-    """Where this was measured."""
-    model = next((line.split(": ")[1].strip() for line in Path("/proc/cpuinfo").read_text().splitlines()
-                  if line.startswith("model name")), platform.machine())  # fmt: skip
-    return {
-        "processor": model,
-        "cores": len(os.sched_getaffinity(0)),
-        "python": platform.python_version(),
-        "sqlite": sqlite3.sqlite_version,
-        "sync_ms": round(sync_ms(folder), 3),
-        "load_before": os.getloadavg()[0],
-    }
 
 
 def print_table(rows: list[dict[str, Any]], columns: dict[str, str]) -> None:
