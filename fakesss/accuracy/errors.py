@@ -23,7 +23,7 @@ PIXELS_PER_DEGREE = 0.60 * (1920 / 0.531) * np.pi / 180  # 37.9
 # spaces developed after the adoption of CIELAB and CIELUV*, 1994). One unit, CIELAB's own aim, is stricter.
 MAHY = 2.3
 # FLIP of two even fields d units apart in lightness: p_t / (p_c c_max) d^q_c (Andersson et al., sec. 4.1.3) with p_t =
-# 0.95, p_c = 0.4, q_c = 0.7 and c_max = 41.276. Where edges or points differ as well, FLIP is larger than colours alone make it.
+# 0.95, p_c = 0.4, q_c = 0.7 and c_max = 41.276. Where edges or points differ too, it is larger.
 JUST_NOTICEABLE = 0.95 / (0.4 * 41.276) * MAHY**0.7  # 0.103
 
 EVERYWHERE = 99.9  # percentile, see `Errors.flip_everywhere`
