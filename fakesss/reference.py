@@ -21,11 +21,16 @@ ATTEMPTS = 4  # at a ray that slips between two triangles, each turned by about 
 SLIP = 2e-6
 
 
-def camera_rays(view: View, size: tuple[int, int]) -> tuple[Floats, Floats]:
-    """Origins and unit directions through the pixel centres of a picture of `size` (width, height), top row first."""
+def camera_rays(
+    view: View, size: tuple[int, int], columns: range | None = None, rows: range | None = None
+) -> tuple[Floats, Floats]:
+    """Origins and unit directions through the pixel centres of a picture of `size` (width, height), top row first.
+
+    `columns` and `rows` choose some of them, also beyond the picture's border.
+    """
     width, height = size
-    across = (np.arange(width) + 0.5) / width * 2 - 1
-    up = 1 - (np.arange(height) + 0.5) / height * 2
+    across = (np.array(columns or range(width)) + 0.5) / width * 2 - 1
+    up = 1 - (np.array(rows or range(height)) + 0.5) / height * 2
     x, y = (side.ravel() for side in np.meshgrid(across * view.tangent[0], up * view.tangent[1]))
     right, above, towards = view.rotation
     directions = x[:, None] * right + y[:, None] * above - towards
