@@ -9,6 +9,8 @@ from fakesss.frame import Frame
 from fakesss.frame_graph import Pass, TextureSpec
 from fakesss.passes.geometry import draw_mesh
 
+EXACT = "draws every back face at every sample; which faces and how many samples are knobs of other modules"
+
 
 def back_faces(setting: Setting) -> Pass:
     """Reads `mesh`, or `coarse_mesh` where `layers.faces` asks for it; writes `nearest_back` (depth)."""

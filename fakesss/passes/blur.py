@@ -3,10 +3,22 @@
 from collections.abc import Mapping
 from typing import Any
 
-from fakesss.calls import Setting
+from fakesss.calls import Setting, no_thickness
 from fakesss.frame import Frame
 from fakesss.frame_graph import Pass, TextureSpec
+from fakesss.knob import Knob, Level, culled, first_of
 from fakesss.passes.thickness import open_thickness
+
+SOFTENED = Level("5x5", {"blur.enabled": True})
+KNOBS = (
+    Knob(
+        name="blur kernel",
+        levels=(Level("none", {"blur.enabled": False}), SOFTENED),
+        reference=SOFTENED,
+        error="how soft the second layer's edges are",
+        unused=first_of(no_thickness, culled("blur")),
+    ),
+)
 
 PUBLISHED_STEP = 1 / 256  # of the viewport, thesis appendix C.2.1
 PUBLISHED_RANGE = 0.10  # of non-linear depth, thesis eq. C.1

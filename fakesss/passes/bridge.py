@@ -18,6 +18,8 @@ from fakesss.frame import Frame
 from fakesss.frame_graph import Pass, TextureSpec
 from fakesss.passes.peel import DEEPEST
 
+EXACT = "sums what the layers hold; that six of them count is part of what this thickness means"
+
 LAYERS = ("front", *(f"layer_{number}" for number in range(2, DEEPEST + 1)))
 
 

@@ -8,6 +8,8 @@ from fakesss.frame_graph import DEPTH, Pass, TextureSpec
 from fakesss.passes.geometry import Attribute, draw_mesh, normals, upload
 from fakesss.scene import Scene
 
+EXACT = "draws every face at every sample; its buffers hold float32"
+
 
 def front(setting: Setting) -> Pass:
     """Writes `front` (depth, see common_layers.glsl), `surface` (unit normal in the eye frame, baked occlusion) and

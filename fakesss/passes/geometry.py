@@ -11,6 +11,8 @@ from fakesss.camera import View
 from fakesss.frame import Frame
 from fakesss.mesh import Mesh
 
+EXACT = "only uploads vertices and draws them"
+
 
 @dataclass
 class Upload:

@@ -7,6 +7,8 @@ from fakesss.calls import Setting, diffuse_colour, specular_colour
 from fakesss.camera import direction
 from fakesss.illumination import cone, place
 
+EXACT = "only hands numbers to the shading"
+
 
 def array(values: Sequence[Any]) -> Any:
     """A uniform array's values; OpenGL's binding takes that of an array of one without the list."""

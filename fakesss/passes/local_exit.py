@@ -5,6 +5,8 @@ from fakesss.frame import Frame
 from fakesss.frame_graph import Pass, TextureSpec
 from fakesss.passes.geometry import draw_mesh, upload
 
+EXACT = "draws what is baked; the bake has the knob"
+
 
 def local_exit(setting: Setting) -> Pass:
     """Reads `mesh` and `local_thickness`; writes `local_exit`: the depth at which so long an interval ends."""

@@ -4,7 +4,20 @@ from collections.abc import Mapping
 from typing import Any
 
 from fakesss.frame_graph import Bake
+from fakesss.knob import Knob, Level, culled, levels
 from fakesss.scene import Scene
+
+KNOBS = (
+    Knob(
+        name="local thickness rays",
+        levels=levels("layers.rays", (8, 16, 32, 64, 128, 320, 1024, 4096)),
+        reference=Level(16384, {"layers.rays": 16384}),
+        error="the mean way to the other side, another at each vertex",
+        unused=culled("local_thickness"),
+        order=0.5,
+        baked=True,
+    ),
+)
 
 
 def local_thickness(scene: Scene) -> Bake:

@@ -7,6 +7,8 @@ from fakesss.frame_graph import Bake
 from fakesss.scene import Scene
 from fakesss.shapes import load_object
 
+EXACT = "takes the object as it is"
+
 
 def mesh(scene: Scene) -> Bake:
     """Writes `mesh`, a `fakesss.mesh.Mesh`."""

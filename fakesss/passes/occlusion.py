@@ -4,7 +4,20 @@ from collections.abc import Mapping
 from typing import Any
 
 from fakesss.frame_graph import Bake
+from fakesss.knob import Knob, Level, culled, levels
 from fakesss.scene import Scene
+
+KNOBS = (
+    Knob(
+        name="occlusion rays",
+        levels=levels("occlusion.rays", (8, 16, 32, 64, 128, 320, 1024, 4096)),
+        reference=Level(16384, {"occlusion.rays": 16384}),
+        error="the share of rays that hit nothing, another at each vertex",
+        unused=culled("occlusion"),
+        order=0.5,
+        baked=True,
+    ),
+)
 
 
 def occlusion(scene: Scene) -> Bake:

@@ -5,6 +5,8 @@ from fakesss.frame import Frame
 from fakesss.frame_graph import Pass, TextureSpec
 from fakesss.passes.geometry import Cull, draw_mesh, shows_front_faces
 
+EXACT = "looks at every fragment; what lies within 1e-5 diameters of a layer is that layer"
+
 DEEPEST = 6  # layer of a bridged thickness: three stretches of matter in a solid
 
 

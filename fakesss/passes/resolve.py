@@ -3,6 +3,20 @@
 from fakesss.calls import Setting
 from fakesss.frame import Frame
 from fakesss.frame_graph import Choice, Pass, TextureSpec
+from fakesss.knob import Knob, culled, levels
+
+SAMPLES = levels("supersampling", (1, 2, 3, 4, 6, 8))
+KNOBS = (
+    Knob(
+        name="supersampling",
+        levels=SAMPLES,
+        reference=SAMPLES[-1],
+        error="the share of a pixel that each thing covers: edges, and grain of what is turned from pixel to pixel",
+        unused=culled("shade"),
+        order=1.0,
+        beside=3,  # it multiplies every other cost
+    ),
+)
 
 
 def resolve(setting: Setting) -> Pass:

@@ -7,7 +7,21 @@ that are hidden or outside the picture block nothing, and it changes as the came
 from fakesss.calls import Setting
 from fakesss.frame import Frame
 from fakesss.frame_graph import Pass, TextureSpec
+from fakesss.knob import Knob, culled, levels
 from fakesss.screen_occlusion import POINTS
+
+SAMPLES = levels("occlusion.samples", (16, 32, 64, 128, 256))
+KNOBS = (
+    Knob(
+        name="screen-space samples",
+        levels=SAMPLES,
+        reference=SAMPLES[-1],
+        error="the share of directions that the front layer blocks; what the camera does not see is no part of it",
+        unused=culled("sample_occlusion"),
+        order=0.5,
+        beside=64,
+    ),
+)
 
 
 def sample_occlusion(setting: Setting) -> Pass:

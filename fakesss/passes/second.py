@@ -1,7 +1,19 @@
 """Where the light of a pixel is taken to have entered the object: one of several layers, by what the scene says."""
 
-from fakesss.calls import Setting
+from fakesss.calls import Setting, no_thickness
 from fakesss.frame_graph import Choice
+from fakesss.knob import Knob, culled, first_of, levels
+
+METHODS = levels("layers.method", ("auto", "peel"))
+KNOBS = (
+    Knob(
+        name="layer method",
+        levels=METHODS,
+        reference=METHODS[0],
+        error="single samples at triangles seen edge-on, where one sample is many depths",
+        unused=first_of(no_thickness, culled("first_exit")),
+    ),
+)
 
 EXITS = {"first-interval": "first_exit", "total-path": "path_exit", "bridged": "bridged_exit", "local": "local_exit"}
 

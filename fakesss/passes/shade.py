@@ -8,6 +8,8 @@ from fakesss.frame_graph import Pass, TextureSpec
 from fakesss.passes import shadow
 from fakesss.passes.lights import light_defines, light_uniforms
 
+EXACT = "evaluates equation 3.6 at every sample in closed form"
+
 THICKNESSES = ("thickness", "blurred_thickness")
 SCREEN_OCCLUSION = ("screen_occlusion",)
 

@@ -6,13 +6,49 @@ from typing import Any
 from fakesss.calls import Setting, shining
 from fakesss.frame import Frame
 from fakesss.frame_graph import Pass, TextureSpec
+from fakesss.knob import Knob, culled, first_of, levels
 from fakesss.lights import Light
 from fakesss.passes.geometry import Cull, draw_mesh
 from fakesss.passes.lights import array
+from fakesss.scene import Scene
 from fakesss.shadow_maps import Atlas, atlas, is_outside, map_views
+
+MAPS = levels("shadow.map_size", (256, 512, 1024, 2048, 4096))
+FILTERED = levels("shadow.filter", ("hard", "pcf"))
+TAPS = levels("shadow.samples", (1, 2, 4, 8, 16, 32, 64))
+KNOBS = (
+    Knob(
+        name="shadow map size",
+        levels=MAPS,
+        reference=MAPS[-1],
+        error="where a shadow's edge runs, by parts of a texel",
+        unused=culled("shadow"),
+        order=1.0,
+    ),
+    Knob(
+        name="shadow filter",
+        levels=FILTERED,
+        reference=FILTERED[-1],
+        error="steps of a texel along a shadow's edge",
+        unused=first_of(culled("shadow"), lambda scene: other_filter(scene, disc=False)),
+    ),
+    Knob(
+        name="shadow taps",
+        levels=TAPS,
+        reference=TAPS[-1],
+        error="grain in the penumbra",
+        unused=first_of(culled("shadow"), lambda scene: other_filter(scene, disc=True)),
+        order=0.5,
+    ),
+)
 
 NOTHING = 1e9  # depth where a light sees nothing of the object, sphere radii: behind everything
 FILTERS = {"hard": 0, "pcf": 1, "disc": 2}
+
+
+def other_filter(scene: Scene, disc: bool) -> str:
+    """Why a knob of the disc filter, or of the two others, is none of the scene's."""
+    return "" if (scene.shadow.filter == "disc") == disc else f'shadow.filter is "{scene.shadow.filter}"'
 
 
 def layout_of(setting: Setting) -> Atlas:

@@ -9,6 +9,8 @@ from fakesss.frame_graph import Pass, TextureSpec
 from fakesss.mesh import Mesh
 from fakesss.passes.geometry import shows_front_faces
 
+EXACT = "subtracts two depths"
+
 
 def thickness(setting: Setting) -> Pass:
     """Reads `mesh`, `front` and `second`; writes `thickness` (0..1). The shading can compute it in place."""

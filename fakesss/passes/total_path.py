@@ -9,6 +9,8 @@ from fakesss.frame import Frame
 from fakesss.frame_graph import Pass, TextureSpec
 from fakesss.passes.geometry import draw_mesh
 
+EXACT = "adds up every face's depth in float32"
+
 
 def total_path(setting: Setting) -> Pass:
     """Reads `mesh`; writes `path`: (depth of exits less depth of entries in sphere radii, exits less entries)."""
