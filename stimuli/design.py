@@ -8,7 +8,8 @@ from typing import Literal
 
 from fakesss.problem import BadInput
 from fakesss.scene import Scene
-from stimuli.study import Factor, Level, Study, written
+from stimuli.levels import Level, written
+from stimuli.study import Factor, Study
 
 Role = Literal["factor", "compare", "control", "repeat"]
 

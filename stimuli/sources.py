@@ -5,7 +5,8 @@ from pathlib import Path
 
 from fakesss.problem import BadInput
 from stimuli.design import Stimulus
-from stimuli.study import Study, written
+from stimuli.levels import leaves, written
+from stimuli.study import Study
 
 
 def check_sources(study: Study, stimuli: Iterable[Stimulus], folder: Path) -> None:
@@ -31,7 +32,7 @@ def object_place(study: Study, name: str) -> str:
         if factor.path == "object" and name in factor.levels:
             return f'factor "{factor.name}": level {written(name)}'
     if name != study.scene.object:  # a control's, then: nothing else sets it
-        label = next(control.label for control in study.control if control.set.get("object") == name)
+        label = next(control.label for control in study.control if dict(leaves(control.set)).get("object") == name)
         return f"control {written(label)}: object {written(name)}"
     return f"scene.object {written(name)}"
 

@@ -4,10 +4,8 @@ The tables that concern participants and statistics (`[[question]]`, `[survey]`,
 """
 
 import hashlib
-import json
-import math
 import re
-from collections.abc import Iterator, Mapping
+from collections.abc import Mapping
 from pathlib import Path
 from typing import Annotated, Any, Literal, Self
 
@@ -15,42 +13,11 @@ from pydantic import Field, model_validator
 
 from fakesss.problem import BadInput, Strict, validated
 from fakesss.scene import Scene, check_path, read_toml
+from stimuli.changes import ONE_SIZE, check_opaque
+from stimuli.control import Control
+from stimuli.levels import MUST_BE, Level, is_level, written
 
-Level = str | bool | int | float | tuple[float | int, ...]
-MUST_BE = "must be a finite number, true or false, a word, or a list of numbers"
-ONE_SIZE = "all pictures of a study have one size; set it in [scene]"  # on screen, and for the cues that count pixels
 FORMULA = tuple("=+-@\t\r")
-
-
-def is_number(value: Any) -> bool:
-    """Whether `value` is a finite number; true and false are none."""
-    return isinstance(value, int | float) and not isinstance(value, bool) and math.isfinite(value)
-
-
-def is_list_of_numbers(value: Any) -> bool:
-    """Whether `value` is a list of at least one finite number."""
-    return isinstance(value, list) and len(value) > 0 and all(map(is_number, value))
-
-
-def is_level(value: Any) -> bool:
-    """Whether a scene's field could have that value: a finite number, true, false, a word, a list of numbers."""
-    return is_number(value) or isinstance(value, str | bool) or is_list_of_numbers(value)
-
-
-def leaves(table: Mapping[str, Any], prefix: str = "") -> Iterator[tuple[str, Any]]:
-    """(dotted path, value) of everything in a table and the tables within."""
-    for name, value in table.items():
-        if isinstance(value, Mapping):
-            yield from leaves(value, f"{prefix}{name}.")
-        else:
-            yield f"{prefix}{name}", value
-
-
-def written(level: Any) -> str:
-    """A level as it stands in study.toml: -3, true, "spot", [1, 1]."""
-    if isinstance(level, list | tuple):
-        return "[" + ", ".join(map(written, level)) + "]"
-    return json.dumps(level, ensure_ascii=False) if isinstance(level, str | bool) else str(level)
 
 
 class Factor(Strict):
@@ -80,35 +47,6 @@ class Compare(Strict):
     label: str = Field("", description="name in tables; empty: the file's name")
 
 
-class Control(Strict):
-    """A picture of the renderer that belongs to no factor: the base scene with some fields set otherwise."""
-
-    label: Annotated[str, Field(min_length=1, description="name in tables")]
-    set: Annotated[dict[str, Any], Field(description="scene field = value, as { material.backlight = 0 }")]
-
-    @property
-    def changes(self) -> dict[str, Any]:
-        """Path -> value: TOML takes material.backlight = 0 for a table in a table, "material.backlight" = 0 not."""
-        return dict(leaves(self.set))
-
-    def scene(self, base: Scene) -> Scene:
-        """`base` with the fields set, or `BadInput` naming control, field and mend."""
-        where = f"study.toml: control {written(self.label)}"
-        if not self.changes:
-            raise BadInput(f"{where}: sets nothing; name a field, for example set = {{ material.backlight = 0 }}")
-        paths = [path for path, _ in leaves(self.set)]
-        twice = next((path for path in paths if paths.count(path) > 1), None)
-        if twice is not None:
-            raise BadInput(f"{where}: {twice} stands twice; remove one")
-        for path, value in self.changes.items():
-            check_path(path, where, len(base.lights))
-            if path == "size":
-                raise BadInput(f"{where}: size = {written(value)}: {ONE_SIZE}")
-            if not is_level(value):
-                raise BadInput(f"{where}: {path} = {written(value)}: {MUST_BE}")
-        return base.replace(self.changes, where)
-
-
 class Study(Strict):
     """`study.toml`, checked. `Study.load` is the way in; `sha256` is of the file's bytes."""
 
@@ -134,7 +72,7 @@ class Study(Strict):
         for factor in study.factor:
             check_factor(factor, study.scene, path.name)
         for control in study.control:
-            check_opaque(control.scene(study.scene), f"{path.name}: control {written(control.label)}")
+            control.scene(study.scene)
         return study
 
     @model_validator(mode="after")
@@ -167,12 +105,6 @@ def study_file(folder: Path) -> Path:
 def study_sha256(folder: Path) -> str:
     """SHA-256 of the study file's bytes: the name of this version of the study."""
     return hashlib.sha256(study_file(folder).read_bytes()).hexdigest()
-
-
-def check_opaque(scene: Scene, where: str) -> None:
-    """`BadInput` naming the place if the picture would have no background of its own."""
-    if scene.alpha:
-        raise BadInput(f"{where}: a browser would show its page through the picture; set alpha = false")
 
 
 def check_levels_are_values(tables: Mapping[str, Any], source: str) -> None:

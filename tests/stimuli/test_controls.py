@@ -1,13 +1,18 @@
 """Control pictures: the renderer's, rated beside the others, in no factor's row."""
 
 from pathlib import Path
+from typing import Any
 
+import numpy as np
 import pytest
 from test_build import STUDY
 from test_study import FACTOR, load
 
 from fakesss.problem import BadInput
+from fakesss.renderer import Renderer
+from fakesss.scene import Scene
 from stimuli.build import build, verify
+from stimuli.control import Control
 from stimuli.design import stimuli_of
 from stimuli.sources import check_sources
 
@@ -63,6 +68,10 @@ def test_controls_are_drawn_by_lot_for_repeats_like_others(tmp_path: Path) -> No
         ('label = "a"\nset = { alpha = true }', 'control "a": a browser would show its page through the picture'),
         ('label = "a"\nset = {}', 'study.toml: control "a": sets nothing; name a field, for example set = {'),
         ('label = "a"\nset.material = {}', 'study.toml: control "a": sets nothing'),
+        (
+            'label = "a"\nkind = "lambert"',
+            "study.toml: control[1].kind: 'lambert': must be 'lambertian' or 'ganzfeld'",
+        ),
         ('label = "a"\nset = 1', "study.toml: control[1].set: 1: must be"),
         ("set.exposure = 1", "study.toml: control[1].label: is missing; add it"),
         ('label = ""\nset.exposure = 1', "study.toml: control[1].label: '': must not be empty; write a word"),
@@ -124,3 +133,48 @@ def test_a_control_is_built_like_any_picture(tmp_path: Path) -> None:
     assert control["cues"]["mean_thickness"] == manifest["stimuli"][0]["cues"]["mean_thickness"]
     assert "control" not in manifest["study"]
     assert verify(tmp_path, quiet=True) == []
+
+
+def preset(kind: str, **changes: Any) -> Scene:
+    """The scene of a control of that kind, of a study with two coloured lights and little ambient light."""
+    blue = {"azimuth": 60.0, "diffuse": (0.1, 0.2, 0.9), "ambient": (0.0, 0.0, 0.3)}
+    base = Scene(object="knot:4000", size=(64, 64), supersampling=1).replace({"lights": [blue]})
+    return Control.model_validate({"label": "opaque", "kind": kind, "set": changes}).scene(base)
+
+
+@pytest.mark.gl
+@pytest.mark.parametrize("kind", ["lambertian", "ganzfeld"])
+def test_an_opaque_control_is_drawn_without_any_thickness(kind: str) -> None:
+    passes = {timing["name"] for timing in Renderer().render(preset(kind)).passes}
+    assert "front" in passes and "shade" in passes
+    assert passes.isdisjoint({"back_faces", "peel", "blur", "total_path", "bridge", "local_exit"})
+
+
+@pytest.mark.gl
+def test_a_ganzfeld_picture_is_albedo_times_ambient_times_occlusion() -> None:
+    scene = preset("ganzfeld")
+    found = Renderer().data(scene, ("image", "surface"))
+    inside = found["image"][..., 3] > 0
+    occlusion = found["surface"][..., 3][inside]
+    assert occlusion.min() < 0.5 < 0.99 < occlusion.max()  # the knot hides some of itself
+    expected = scene.exposure * np.array(scene.material.diffuse) * occlusion[:, None]
+    np.testing.assert_allclose(found["image"][..., :3][inside], expected, rtol=1e-5)
+
+
+@pytest.mark.gl
+def test_a_lambertian_picture_is_the_same_from_wherever_it_is_looked_at() -> None:
+    """A sphere's middle faces the camera: with the light there too it shows Kd Id, and nothing glossy beside it."""
+    ball = {"object": "sphere:16000", "light.azimuth": 0.0, "light.elevation": 8.0, "light.ambient": [0.0, 0.0, 0.0]}
+    scene = preset("lambertian", **ball, **{"lights.0.diffuse": [0, 0, 0], "lights.0.ambient": [0, 0, 0]})
+    image = Renderer().render(scene).image
+    expected = scene.exposure * np.array(scene.material.diffuse)
+    np.testing.assert_allclose(image[30:34, 30:34, :3].mean(axis=(0, 1)), expected, rtol=5e-3)
+    across = image[32, :, 0][image[32, :, 3] > 0.99]
+    assert np.all(np.diff(across[len(across) // 2 :]) <= 1e-6)  # falls to the rim: no rim glows, no second highlight
+
+
+def test_fields_set_beside_a_kind_come_after_it(tmp_path: Path) -> None:
+    table = '[[control]]\nlabel = "opaque"\nkind = "lambertian"\nset = { material.backlight = 0.5 }\n'
+    (only,) = stimuli_of(load(tmp_path, f'title = "x"\n{table}'))
+    assert only.scene is not None
+    assert (only.scene.material.backlight, only.scene.material.diffuse_contribution) == (0.5, 1.0)
