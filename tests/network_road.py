@@ -27,7 +27,8 @@ class Road:
         self.url = f"http://127.0.0.1:{self.port}"
         self.mistakes: list[BaseException] = []
         self.links: set[Link] = set()
-        self.swallowed: list[asyncio.StreamWriter] = []
+        self.clients: set[asyncio.StreamWriter] = set()
+        self.tasks: set[asyncio.Task[None]] = set()
         self.swallowing = False
         self.listener: asyncio.Server | None = None
         self.loop = asyncio.new_event_loop()
@@ -69,7 +70,7 @@ class Road:
         """Until the next cut."""
         self.swallowing = False
         if self.listener is None:
-            self.listener = await asyncio.start_server(self.connected, "127.0.0.1", self.port, backlog=1000)
+            self.listener = await asyncio.start_server(self.came, "127.0.0.1", self.port, backlog=1000)
 
     def refuse(self) -> None:
         """The listening socket is closed."""
@@ -88,12 +89,18 @@ class Road:
                 self.witness.count("swallowed connection")
                 link.silence()
 
-    async def connected(self, reader: asyncio.StreamReader, writer: asyncio.StreamWriter) -> None:
-        """A client came."""
+    def came(self, reader: asyncio.StreamReader, writer: asyncio.StreamWriter) -> None:
+        """A client connected. It is noted at once: a task that is cancelled before it begins would leave it open."""
+        self.clients.add(writer)
         if self.swallowing:
-            self.swallowed.append(writer)
             self.witness.count("swallowed connection")
             return
+        task = self.loop.create_task(self.connected(reader, writer))
+        self.tasks.add(task)
+        task.add_done_callback(self.tasks.discard)
+
+    async def connected(self, reader: asyncio.StreamReader, writer: asyncio.StreamWriter) -> None:
+        """Until the client or the server has left."""
         try:
             server = await asyncio.open_connection(*self.server)
         except OSError:  # the server is down
@@ -109,12 +116,13 @@ class Road:
             self.mistakes.append(mistake)
         finally:
             self.links.discard(link)
+            self.clients.discard(writer)
 
     async def end(self) -> None:
         """Nobody listens, nothing is open."""
         if self.listener is not None:
             self.listener.close()
-        for writer in self.swallowed:
+        for writer in self.clients:
             writer.close()
         tasks = asyncio.all_tasks() - {asyncio.current_task()}
         for task in tasks:

@@ -18,7 +18,7 @@ from study_server.screen.plates import PLATES
 from study_server.screen.screen_check import ANSWER, CARD_MM, DERIVED, MATCHES, PARTS, asked, columns, found, gamma
 from study_server.serve import served
 
-HERE = Path(screen_check.__file__).parent
+HERE = Path(screen_check.__file__).parents[1]
 DOCS = (Path(__file__).parents[2] / "docs" / "survey.md").read_text(encoding="utf-8")
 ALL = ("card", "wedge", "plates")
 CsvRows = Callable[..., list[dict[str, str]]]
