@@ -1,0 +1,211 @@
+"""The picture that all approximations stand for: equation 3.6 from exact quantities, sample by sample.
+
+What is seen and how deep by rays (`exact_sight`), softened by the integral that the blur's taps stand for
+(`exact_blur`), occlusion from 16,384 rays a vertex and shadows by rays (`exact_light`), lit in numpy
+(`illumination`), and 8 x 8 samples a pixel. None of it draws a triangle or reads a texture.
+
+It is the truth *of the technique*, on the mesh as it is: facets stay facets, and no light is scattered.
+"""
+
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass
+from functools import cached_property
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+from tqdm import tqdm
+
+from fakesss import cache, illumination
+from fakesss.accuracy import exact_blur, exact_light
+from fakesss.accuracy.exact_sight import BAKE_RAYS, Seen, Sight, corner_shares, interpolated
+from fakesss.calls import Setting
+from fakesss.camera import View
+from fakesss.mesh import Mesh
+from fakesss.problem import BadInput
+from fakesss.ray_casting import Caster
+from fakesss.scene import Scene
+from fakesss.shapes import load_object
+from fakesss.solidity import is_solid
+from fakesss.vertex_normals import normalised
+
+Floats = NDArray[np.float64]
+Floats32 = NDArray[np.float32]
+
+VERSION = 1  # raised whenever the values change, so that cached tiles are made again
+TILE = 64  # pixels a side: with 8 x 8 samples some 200 MB while it is made
+# Settings that say how well something is approximated, not what: no reference depends on them
+APPROXIMATIONS: Any = {
+    "object": True,  # counts by its content
+    "quality": True,
+    "supersampling": True,
+    "layers": {"method", "rays", "faces", "resolution", "depth"},
+    "blur": {"kernel"},
+    "occlusion": {"method", "rays", "samples", "radius", "bias"},
+    "shadow": True,
+}
+
+Part = tuple[slice, slice]  # rows and columns of the picture, pixels
+
+
+@dataclass(frozen=True)
+class Truth:
+    """A scene and what its exact quantities are computed from."""
+
+    scene: Scene
+    samples: int  # a side, in a pixel
+
+    @cached_property
+    def mesh(self) -> Mesh:
+        return load_object(self.scene.object)
+
+    @cached_property
+    def setting(self) -> Setting:
+        """What the scene calls for, with as many samples."""
+        width, height = self.scene.size
+        size = (width * self.samples, height * self.samples)
+        view = View.of(self.scene.camera, self.scene.size)
+        return Setting(self.scene, view, size, self.samples, is_solid(self.mesh))
+
+    @cached_property
+    def sight(self) -> Sight:
+        return Sight(self.scene, self.mesh, self.setting.view)
+
+    @cached_property
+    def caster(self) -> Caster:
+        return Caster(self.mesh)
+
+    @cached_property
+    def occlusion(self) -> Floats32 | None:
+        """[a] at the vertices (V,), or None where everything sees the whole hemisphere."""
+        if self.setting.lacking("occlusion"):
+            return None
+        return exact_light.vertex_occlusion(self.mesh, self.scene.occlusion)
+
+    @property
+    def open_thickness(self) -> float:
+        """Thickness of a sample with no second layer: 0 on a closed surface seen whole, else the scene's policy."""
+        if self.mesh.watertight and not self.setting.view.clips_sphere:
+            return 0.0
+        return {"thin": 0.0, "thick": 1.0}[self.scene.open_surface]
+
+    def seen(self, part: Part, finer: int = 1, margin: int = 0) -> Seen:
+        """What the samples of a part of the picture see, `finer` times as many a side and `margin` more around."""
+        size = self.setting.size
+        rows, columns = (
+            range(one.start * self.samples * finer - margin, one.stop * self.samples * finer + margin) for one in part
+        )
+        return self.sight((size[0] * finer, size[1] * finer), columns, rows)
+
+    def shape(self, part: Part) -> tuple[int, int]:
+        """Rows and columns of samples in a part of the picture."""
+        rows, columns = ((one.stop - one.start) * self.samples for one in part)
+        return rows, columns
+
+    def thickness(self, part: Part, seen: Seen, softened: bool) -> Floats:
+        """t of the samples (h, w) in sphere diameters, 0..1; NaN where nothing is seen. `seen` is of that part."""
+        front = seen.front.reshape(self.shape(part))
+        second: NDArray[Any] = self.softened(part) if softened else seen.second.reshape(self.shape(part))
+        behind = np.clip((second - front) / 2, 0, 1)
+        return np.where(np.isnan(front), np.nan, np.where(np.isnan(second), self.open_thickness, behind))
+
+    def softened(self, part: Part) -> Floats32:
+        """The softened second layer (h, w) of a part's samples; of its own rays, which lie closer and reach farther."""
+        size, view = self.setting.size, self.setting.view
+        finer = exact_blur.finer(self.scene, view, size[0])
+        kernel = exact_blur.kernel(self.scene, view, (size[0] * finer, size[1] * finer))
+        rows, columns = (side * finer + 2 * kernel.margin for side in self.shape(part))
+        return kernel(self.seen(part, finer, kernel.margin).second.reshape(rows, columns), finer)
+
+
+def exact_picture(scene: Scene, samples: int = 8) -> Floats32:
+    """The exact picture of `scene`, (H, W, 4) float32 as `render` gives: linear RGB over the background, and coverage.
+
+    The mean of `samples` x `samples` samples a pixel. Made tile by tile and kept by content: interrupted, it goes on
+    where it stopped. `BadInput` for style "as published", whose flaws have no truth.
+    """
+    check(scene)
+    truth = Truth(scene, samples)
+    key = {"version": VERSION, "rays": BAKE_RAYS, **content(truth)}
+
+    def one(part: Part) -> Floats32:
+        shape = (part[0].stop - part[0].start, part[1].stop - part[1].start, 4)
+        place = [part[0].start, part[1].start]
+        made = cache.cached("exact", {**key, "place": place}, {"tile": shape}, lambda: {"tile": picture(truth, part)})
+        tile: Floats32 = made[0]["tile"]
+        return tile
+
+    image: Floats32 = together(scene, one, "exact picture")
+    return image
+
+
+def content(truth: Truth) -> dict[str, Any]:
+    """What an exact picture depends on, JSON; a setting that only approximates is not among it."""
+    settings = truth.scene.model_dump(mode="json", exclude=APPROXIMATIONS)
+    return {"scene": settings, "mesh": truth.mesh.sha256, "samples": truth.samples, "tile": TILE}
+
+
+def check(scene: Scene) -> None:
+    """`BadInput` for a scene that stands for nothing but itself."""
+    if scene.style == "as published":
+        raise BadInput('scene: style "as published" shows flaws that have no exact picture; take "default"')
+
+
+def together(scene: Scene, one: Callable[[Part], NDArray[Any]], label: str) -> NDArray[Any]:
+    """What `one` gives of each part of the picture, put together, with a progress bar."""
+    width, height = scene.size
+    parts = list(tiles(width, height))
+    made = [one(part) for part in tqdm(parts, desc=label, unit="tile", disable=None)]
+    in_row = -(-width // TILE)
+    return np.concatenate([np.concatenate(made[i : i + in_row], axis=1) for i in range(0, len(made), in_row)])
+
+
+def tiles(width: int, height: int) -> Iterator[Part]:
+    """The parts of a picture, row by row from the top."""
+    for top in range(0, height, TILE):
+        for left in range(0, width, TILE):
+            yield slice(top, min(top + TILE, height)), slice(left, min(left + TILE, width))
+
+
+def picture(truth: Truth, part: Part) -> Floats32:
+    """A part of the exact picture, (rows, columns, 4)."""
+    scene, seen = truth.scene, truth.seen(part)
+    shaded = np.zeros((len(seen.hit), 4))
+    shaded[:, :3] = 0 if scene.alpha else scene.background
+    if seen.hit.any():
+        shaded[seen.hit, :3] = scene.exposure * radiance(truth, part, seen)
+        shaded[seen.hit, 3] = 1
+    n, (rows, columns) = truth.samples, truth.shape(part)
+    averaged: Floats32 = shaded.reshape(rows // n, n, columns // n, n, 4).mean(axis=(1, 3)).astype(np.float32)
+    return averaged
+
+
+def radiance(truth: Truth, part: Part, seen: Seen) -> Floats:
+    """Equation 3.6 at the samples of a part that see the object: linear RGB (M, 3), before exposure."""
+    scene, mesh, setting = truth.scene, truth.mesh, truth.setting
+    shares = corner_shares(mesh, seen.faces, seen.points)
+    normals = normalised(interpolated(mesh, mesh.normals, seen.faces, shares))
+    normals = np.where(seen.from_behind[:, None], -normals, normals)
+    open_share = np.ones(len(shares))
+    if truth.occlusion is not None:
+        open_share = np.clip(interpolated(mesh, truth.occlusion, seen.faces, shares), 0, 1)
+    t = np.zeros(len(shares))
+    if not setting.lacking("backlight"):
+        t = truth.thickness(part, seen, softened=not setting.lacking("blur")).ravel()[seen.hit]
+    lit = {}
+    if setting.casting:
+        starts = exact_light.onto_smooth_surface(mesh, seen.faces, shares, seen.points, seen.from_behind)
+        lit = exact_light.lit_shares(setting, truth.caster, starts, normals)
+    view = setting.view
+    return illumination.lighting(scene, view, view.turn(seen.points), view.turn(normals), open_share, t, lit)
+
+
+def exact_thickness(scene: Scene, samples: int = 1, softened: bool = False) -> Floats:
+    """t at the samples' centres, (H samples, W samples), in sphere diameters, 0 outside coverage as in `render`.
+
+    Of whichever thickness `material.thickness` asks for; `softened` by the dense blur.
+    """
+    check(scene)
+    truth = Truth(scene, samples)
+    found = together(scene, lambda part: truth.thickness(part, truth.seen(part), softened), "exact thickness")
+    return np.asarray(np.nan_to_num(found))

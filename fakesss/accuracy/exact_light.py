@@ -1,0 +1,85 @@
+"""What keeps light from a point, by rays: ambient occlusion at vertices and at points, and shadows of lights.
+
+Occlusion at vertices is the bake's own quantity with 16,384 rays, whose error is told in docs/accuracy.md. Shadows
+are hard, since a light has no size; what a shadow map's filter softens is part of its error.
+"""
+
+import numpy as np
+from numpy.typing import NDArray
+
+from fakesss import illumination
+from fakesss.accuracy.exact_sight import BAKE_RAYS
+from fakesss.calls import Setting
+from fakesss.camera import View
+from fakesss.hemisphere import mean_over_hemisphere
+from fakesss.lights import Light
+from fakesss.mesh import Mesh
+from fakesss.occlusion import CLEARANCE, bake_occlusion
+from fakesss.ray_casting import Caster
+from fakesss.scene import Occlusion
+
+Floats = NDArray[np.float64]
+Mask = NDArray[np.bool_]
+
+SHADOW_CLEARANCE = 1e-4  # sphere radii, along the normal, from a point to where its rays to the lights start
+
+
+def vertex_occlusion(mesh: Mesh, settings: Occlusion) -> NDArray[np.float32]:
+    """[a] at each vertex (V,), from the cache where it was baked before."""
+    return bake_occlusion(mesh, BAKE_RAYS, settings.sampling).values
+
+
+def point_occlusion(caster: Caster, points: Floats, normals: Floats, settings: Occlusion, rays: int = 4096) -> Floats:
+    """Share (M,) of directions around each point in which nothing lies within `occlusion.radius`: 0..1.
+
+    What screen-space occlusion samples, but of the whole object, also of what the camera does not see. `points` and
+    unit `normals` (M, 3) in the world frame; rays start 5e-4 radii along the normal.
+    """
+    radius = np.float32(2 * settings.radius)
+    origins, axes = (points + CLEARANCE * normals).astype(np.float32), normals.astype(np.float32)
+
+    def clear(start: NDArray[np.float32], along: NDArray[np.float32], reach: NDArray[np.float32]) -> Mask:
+        return caster.clear(start, along, np.minimum(reach, radius))
+
+    mean, _ = mean_over_hemisphere(origins, axes, rays, settings.sampling, clear, "occlusion of points")
+    return np.nan_to_num(mean, nan=1.0)
+
+
+def onto_smooth_surface(
+    mesh: Mesh, faces: NDArray[np.int32], shares: Floats, points: Floats, from_behind: Mask
+) -> Floats:
+    """Points (M, 3) of flat triangles lifted to the round surface that their vertex normals describe, never below.
+
+    Hanika, *Hacking the shadow terminator* (Ray Tracing Gems II, 2021). Shading uses the smooth normals, so near where
+    the light grazes it a point is lit although its triangle, or the next one, already turns away: rays from the flat
+    triangle would show the triangles there. Where a surface is seen from behind, its normals are turned.
+    """
+    turned = np.where(from_behind, -1.0, 1.0)[:, None]
+    lifted = np.zeros_like(points)
+    for corner in range(3):
+        vertices = mesh.faces[faces, corner]
+        normal = turned * mesh.normals[vertices]
+        below = ((points - mesh.positions[vertices]) * normal).sum(axis=1, keepdims=True)
+        lifted += shares[:, [corner]] * (points - np.minimum(below, 0) * normal)
+    return lifted
+
+
+def lit_shares(setting: Setting, caster: Caster, starts: Floats, normals: Floats) -> dict[int, Floats]:
+    """For the number of each light that casts shadows, 1 where it reaches a point (M,), 0 where the object hides it.
+
+    `starts` and unit `normals` (M, 3), world frame: where rays start is `SHADOW_CLEARANCE` further along the normal.
+    Numbers are those of `illumination.lighting`: 0 is `light`, i + 1 `lights.i`.
+    """
+    scene, view = setting.scene, setting.view
+    origins = starts + SHADOW_CLEARANCE * normals
+    numbered = enumerate((scene.light, *scene.lights))
+    return {number: reaches(light, view, caster, origins) for number, light in numbered if light in setting.casting}
+
+
+def reaches(light: Light, view: View, caster: Caster, origins: Floats) -> Floats:
+    """Whether a light is seen from `origins` (M, 3), world frame: 1 or 0, (M,)."""
+    place = illumination.place(light, view)
+    to_light, _ = illumination.arriving(light, view, view.turn(origins))
+    far = np.linalg.norm(place[:3] - view.turn(origins), axis=1) if place[3] else np.full(len(origins), np.inf)
+    directions = (to_light @ view.rotation).astype(np.float32)
+    return caster.clear(origins.astype(np.float32), directions, far.astype(np.float32)).astype(np.float64)
