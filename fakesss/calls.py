@@ -86,6 +86,10 @@ def when(holds: bool, sentence: str) -> str:
     return sentence if holds else ""
 
 
+def as_published(scene: Scene) -> str:
+    return when(scene.style == "as published", 'style is "as published"')
+
+
 def no_exposure(scene: Scene) -> str:
     return when(scene.exposure == 0, "exposure is 0")
 

@@ -7,14 +7,14 @@ from numpy.typing import NDArray
 
 from fakesss.camera import View
 from fakesss.hard_edges import either
-from fakesss.passes.blur import PUBLISHED_STEP
+from fakesss.passes.soften import PUBLISHED_STEP
 from fakesss.scene import Scene
+from fakesss.softening import KERNELS
 
 Float = NDArray[np.float64]
 Mask = NDArray[np.bool_]
 
 ORIGIN = 2.0  # of the layers, in front of the sphere's centre: glsl/common_layers.glsl
-INTERVALS = 4  # between the outermost of the five taps in a row
 
 
 def depth_precision(layer: NDArray[np.float32]) -> tuple[Float, Mask]:
@@ -42,6 +42,7 @@ def blur_width(second: NDArray[Any], scene: Scene) -> Float:
     """
     view = View.of(scene.camera, scene.size)
     share = PUBLISHED_STEP if scene.style == "as published" else view.in_picture(2 * scene.blur.step)[0]
+    intervals = KERNELS[scene.blur.kernel].width
     depth = np.asarray(second, np.float64) - ORIGIN + view.distance
-    width: Float = np.where(np.asarray(second) > 0, INTERVALS * share * depth * view.tangent[0], 0.0)
+    width: Float = np.where(np.asarray(second) > 0, intervals * share * depth * view.tangent[0], 0.0)
     return width

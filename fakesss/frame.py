@@ -68,14 +68,21 @@ class Frame:
         feed(program, {**uniforms, **samplers})
         return program
 
-    def fill(self, fragment: str, uniforms: Mapping[str, Any], **defines: int | float) -> None:
+    def fill(
+        self,
+        fragment: str,
+        uniforms: Mapping[str, Any],
+        renamed: Mapping[str, str] = NOTHING,
+        /,
+        **defines: int | float,
+    ) -> None:
         """Run a fragment shader once for every pixel of the target, or every one that the pass's mask covers."""
         fed = dict(uniforms)
         for node in self.node.merged:
             if node.in_place:
                 more_uniforms, more_defines = node.in_place(self.inputs)
                 fed, defines = fed | more_uniforms, defines | more_defines
-        program = self.program(FULLSCREEN, fragment, fed, defines)
+        program = self.program(FULLSCREEN, fragment, fed, defines, renamed)
         triangle = self.gpu.context.vertex_array(program, [])
         triangle.render(moderngl.TRIANGLES, vertices=3)
         triangle.release()
@@ -204,7 +211,8 @@ class Run:
         root = self.plan.root(name)
         if root not in self.lent:
             return self.live[root]
-        width, height = self.lent[root].size
-        flat: NDArray[np.float32] = np.frombuffer(self.live[root].read(), dtype=np.float32)
-        picture = flat.reshape(height, width, max(self.lent[root].components, 1))
+        spec = self.lent[root]
+        width, height = spec.size
+        flat: NDArray[np.float32] = np.frombuffer(self.live[root].read(), spec.numbers).astype(np.float32, copy=False)
+        picture = flat.reshape(height, width, max(spec.components, 1))
         return picture[..., 0] if picture.shape[2] == 1 else picture

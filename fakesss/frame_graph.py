@@ -8,7 +8,7 @@ it, so a cycle cannot be written down. Declaring and compiling need no GPU.
 from collections.abc import Callable, Hashable, Iterable, Mapping
 from dataclasses import dataclass, field, replace
 from functools import partial
-from typing import Any
+from typing import Any, Literal
 
 
 class FrameGraphError(ValueError):
@@ -20,15 +20,16 @@ DEPTH = 0  # components of a depth buffer
 
 @dataclass(frozen=True)
 class TextureSpec:
-    """A transient float32 texture. Equal specs share memory when their lives do not overlap."""
+    """A transient texture. Equal specs share memory when their lives do not overlap."""
 
     size: tuple[int, int]  # (width, height), pixels
     components: int  # 1..4, or DEPTH
+    numbers: Literal["float32", "float16"] = "float32"  # that it is kept in; a depth buffer has its own
 
     @property
     def bytes(self) -> int:
         """Its memory; a depth buffer takes four bytes a pixel."""
-        return self.size[0] * self.size[1] * 4 * max(self.components, 1)
+        return self.size[0] * self.size[1] * (2 if self.numbers == "float16" else 4) * max(self.components, 1)
 
 
 @dataclass(frozen=True, eq=False)

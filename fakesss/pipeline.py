@@ -18,6 +18,8 @@ from fakesss.passes.screen_occlusion import sample_occlusion, screen_occlusion
 from fakesss.passes.second import first_exit, second
 from fakesss.passes.shade import shade
 from fakesss.passes.shadow import shadow
+from fakesss.passes.soften import soften, soften_across
+from fakesss.passes.sparse import sparse_back_faces, upsample
 from fakesss.passes.thickness import thickness
 from fakesss.passes.total_path import path_exit, total_path
 from fakesss.scene import Scene
@@ -41,6 +43,8 @@ def build(scene: Scene, samples: int = 1, solid: bool = False, forced: frozenset
             coarse_mesh(scene),
             front(setting),
             back_faces(setting),
+            sparse_back_faces(setting),
+            upsample(setting),
             peel(setting),
             first_exit(setting),
             *deeper(setting),
@@ -50,6 +54,8 @@ def build(scene: Scene, samples: int = 1, solid: bool = False, forced: frozenset
             local_exit(setting),
             second(setting),
             thickness(setting),
+            soften_across(setting),
+            soften(setting),
             blur(setting),
             sample_occlusion(setting),
             screen_occlusion(setting),

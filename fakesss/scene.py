@@ -107,14 +107,24 @@ class Layers(Strict):
     faces: Annotated[int, Field(ge=4)] | None = Field(
         None, description="APPROXIMATE second layer from about so many faces; empty: all of them, exact"
     )
+    resolution: Literal[1, 2, 4] = Field(
+        1, description="n: APPROXIMATE second layer of a solid at every n-th sample across and down; 1: at all, exact"
+    )
+    depth: Literal["float32", "float16"] = Field(
+        "float32", description="numbers that layers are kept in; float16: half the memory, depths to 1e-3 diameters"
+    )
 
 
 class Blur(Strict):
-    """The depth-aware 5x5 Gaussian over the second layer (thesis section 3.1, appendix C.2.2)."""
+    """The depth-aware Gaussian over the second layer (thesis section 3.1, appendix C.2.2)."""
 
     enabled: bool = Field(True, description="false: the second layer is used as it is")
     step: Annotated[float, Field(gt=0, le=0.25)] = Field(
-        1 / 256, description="distance between taps, in sphere diameters as seen at the sphere's centre"
+        1 / 256,
+        description="standard deviation (5x5: between taps), in sphere diameters as seen at the sphere's centre",
+    )
+    kernel: Literal["5x5", "3x3", "9x9", "separable"] = Field(
+        "5x5", description="taps that stand for the Gaussian; separable: a row of 5, then a column of 5"
     )
     depth_range: Annotated[float, Field(gt=0, le=1)] = Field(
         0.10, description="depth difference at which a tap's weight reaches 0, in sphere diameters"
@@ -146,6 +156,21 @@ class Scene(Strict):
     layers: Layers = Layers()
     occlusion: Occlusion = Occlusion()
     blur: Blur = Blur()
+
+    @model_validator(mode="after")
+    def published_as_it_was(self) -> Self:
+        asked = {
+            "blur.kernel": self.blur.kernel,
+            "layers.resolution": self.layers.resolution,
+            "layers.depth": self.layers.depth,
+        }
+        had = {"blur.kernel": "5x5", "layers.resolution": 1, "layers.depth": "float32"}
+        for path, value in asked.items():
+            if self.style == "as published" and value != had[path]:
+                raise ValueError(
+                    f'style "as published" has {path} = {json.dumps(had[path])}, not {json.dumps(value)}; leave it out'
+                )
+        return self
 
     @classmethod
     def load(cls, path: str | Path) -> Self:

@@ -7,6 +7,7 @@ import moderngl
 
 from fakesss.frame_graph import DEPTH, TextureSpec
 
+DTYPES = {"float32": "f4", "float16": "f2"}  # moderngl's names
 KEPT = 1 << 28  # bytes: several kinds of picture at 512 x 512 with 3 x 3 samples
 
 Attached = tuple[str, int]  # kind and OpenGL name of what a framebuffer is made of
@@ -19,7 +20,7 @@ def attached(thing: Any) -> Attached:
 
 @dataclass
 class TexturePool:
-    """Transient float32 textures by spec. What is taken filters by nearest and clamps, whoever had it before.
+    """Transient textures by spec. What is taken filters by nearest and clamps, whoever had it before.
 
     Before something is made, what was not used for longest is freed, so that all that was made takes no more than
     `KEPT` bytes, or what the picture at hand needs if that is more (`allow`).
@@ -56,7 +57,7 @@ class TexturePool:
         if spec.components == DEPTH:
             texture = self.context.depth_texture(spec.size)
         else:
-            texture = self.context.texture(spec.size, spec.components, dtype="f4")
+            texture = self.context.texture(spec.size, spec.components, dtype=DTYPES[spec.numbers])
         self.held += spec.bytes
         return texture
 

@@ -1,4 +1,4 @@
-#include "common_blur.glsl"
+#include "common_blurred_thickness.glsl"
 
 uniform sampler2D front;
 
@@ -6,5 +6,5 @@ out float blurred_thickness;
 
 void main() {
     vec2 place = gl_FragCoord.xy / vec2(textureSize(front, 0));
-    blurred_thickness = blurred_thickness_behind(texture(front, place).r, place);
+    blurred_thickness = blurred_thickness_behind(front, texture(front, place).r, place);
 }

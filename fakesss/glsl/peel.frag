@@ -7,8 +7,11 @@
 #define BEFORE_FACES 0  // 1: the layer before is of front faces, -1: of back faces, 0: of either, 2: its sign says which
 #define SIGNED 0  // 1: the layer is negative where it is of a front face
 #define NEAREST 0  // 1: nothing lies before the layer before
-#define PEEL_EPSILON 1e-5  // sphere diameters: well above float32 rounding of a layer
+#define HALF 0  // 1: layers are float16, whose rounding is larger
 #define PUBLISHED_EPSILON 1e-6  // thesis appendix B, in non-linear depth
+
+// Sphere diameters: well above float32 rounding of a layer, just above float16's of 2^-9 radii.
+const float PEEL_EPSILON = HALF == 1 ? 1e-3 : 1e-5;
 
 uniform sampler2D before;
 #if AS_PUBLISHED

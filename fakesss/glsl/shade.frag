@@ -27,7 +27,7 @@ uniform float camera_distance;  // from the sphere's centre, sphere radii
 uniform sampler2D front;
 #endif
 #if HAS_BLURRED_THICKNESS == 2
-#include "common_blur.glsl"
+#include "common_blurred_thickness.glsl"
 #elif HAS_BLURRED_THICKNESS == 1
 uniform sampler2D blurred_thickness;
 #elif HAS_THICKNESS == 2
@@ -44,7 +44,7 @@ uniform float thickness_exponent;  // r
 // texture() is faster than texelFetch() on a software rasteriser; at a sample's centre both read that sample.
 float thickness_here(vec2 place) {
 #if HAS_BLURRED_THICKNESS == 2
-    return blurred_thickness_behind(texture(front, place).r, place);
+    return blurred_thickness_behind(front, texture(front, place).r, place);
 #elif HAS_BLURRED_THICKNESS == 1
     return texture(blurred_thickness, place).r;
 #elif HAS_THICKNESS == 2

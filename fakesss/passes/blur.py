@@ -3,49 +3,70 @@
 from collections.abc import Mapping
 from typing import Any
 
-from fakesss.calls import Setting, no_thickness
+from fakesss.calls import Setting, as_published, no_thickness
 from fakesss.frame import Frame
 from fakesss.frame_graph import Pass, TextureSpec
 from fakesss.knob import Knob, Level, culled, first_of
+from fakesss.passes.soften import kernel_of, tap_defines, tap_uniforms
+from fakesss.passes.sparse import why_not_sparse
 from fakesss.passes.thickness import open_thickness
 
-SOFTENED = Level("5x5", {"blur.enabled": True})
+NONE = Level("none", {"blur.enabled": False})
+SOFTENED = [Level(name, {"blur.enabled": True, "blur.kernel": name}) for name in ("3x3", "separable", "5x5", "9x9")]
 KNOBS = (
     Knob(
         name="blur kernel",
-        levels=(Level("none", {"blur.enabled": False}), SOFTENED),
-        reference=SOFTENED,
+        levels=(NONE, *SOFTENED),
+        reference=SOFTENED[-1],
         error="how soft the second layer's edges are",
-        unused=first_of(no_thickness, culled("blur")),
+        unused=first_of(no_thickness, as_published, culled("blur", {"blur.enabled": True})),
+        beside="5x5",
     ),
 )
 
-PUBLISHED_STEP = 1 / 256  # of the viewport, thesis appendix C.2.1
-PUBLISHED_RANGE = 0.10  # of non-linear depth, thesis eq. C.1
-
 
 def blur(setting: Setting) -> Pass:
-    """Reads `mesh`, `front` and `second`; writes `blurred_thickness` (0..1). The shading can compute it in place."""
-    published, view, settings = setting.published, setting.view, setting.scene.blur
-    constants = {
-        "tap": (PUBLISHED_STEP, PUBLISHED_STEP) if published else view.in_picture(2 * settings.step),
-        "depth_range": PUBLISHED_RANGE if published else 2 * settings.depth_range,
-        **({"clip": (view.near, view.far), "distance": view.distance} if published else {}),
-    }
+    """Writes `blurred_thickness` (0..1); the shading can compute it in place.
+
+    Reads `mesh`, `front` and what is to be softened: `second`, or `softened_across` where the rows are done already,
+    or `softened` where all is, at fewer samples.
+    """
+    source, unread = softened_from(setting)
+    uniforms, defines = how(setting, source)
 
     def in_place(inputs: Mapping[str, Any]) -> tuple[dict[str, Any], dict[str, int]]:
-        uniforms = {**constants, "open_thickness": open_thickness(inputs["mesh"], setting)}
-        return uniforms, {"AS_PUBLISHED": int(published)}
+        return {**uniforms, "open_thickness": open_thickness(inputs["mesh"], setting)}, defines
 
     def draw(frame: Frame) -> None:
-        uniforms, defines = in_place(frame.inputs)
-        frame.fill("blur.frag", uniforms, **defines)
+        fed, permutation = in_place(frame.inputs)
+        frame.fill("blur.frag", fed, **permutation)
 
     return Pass(
         "blur",
         draw,
-        reads=("mesh", "front", "second", "coverage"),
+        reads=("mesh", "front", source, "coverage"),
+        unread=unread,
         writes={"blurred_thickness": TextureSpec(setting.size, 1)},
         mask="coverage",
         in_place=in_place,
     )
+
+
+def softened_from(setting: Setting) -> tuple[str, dict[str, str]]:
+    """The layer that is read, and why not the others."""
+    not_sparse = why_not_sparse(setting)
+    if not not_sparse:
+        why = f"layers.resolution is {setting.scene.layers.resolution}, so the layer is softened while it is sparse"
+        return "softened", {"second": why, "softened_across": why}
+    kernel = f'blur.kernel is "{setting.scene.blur.kernel}"'
+    if kernel_of(setting).separable:
+        return "softened_across", {"second": f"{kernel}, so the rows are softened first", "softened": not_sparse}
+    return "second", {"softened_across": kernel, "softened": not_sparse}
+
+
+def how(setting: Setting, source: str) -> tuple[dict[str, Any], dict[str, int]]:
+    """Uniforms and permutation of `glsl/common_blurred_thickness.glsl`."""
+    if source == "softened":
+        return {}, {"SPARSE": 1, "EVERY": setting.scene.layers.resolution}
+    published = {"AS_PUBLISHED": int(setting.published)}
+    return tap_uniforms(setting), {**published, **tap_defines(setting, source == "softened_across")}

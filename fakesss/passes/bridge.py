@@ -15,7 +15,8 @@ thus their union, while the first interval ends at whatever surface comes next.
 
 from fakesss.calls import Setting
 from fakesss.frame import Frame
-from fakesss.frame_graph import Pass, TextureSpec
+from fakesss.frame_graph import Pass
+from fakesss.passes.layer import layer
 from fakesss.passes.peel import DEEPEST
 
 EXACT = "sums what the layers hold; that six of them count is part of what this thickness means"
@@ -34,6 +35,6 @@ def bridge(setting: Setting) -> Pass:
         "bridge",
         draw,
         reads=(*LAYERS, "coverage"),
-        writes={"bridged_exit": TextureSpec(setting.size, 1)},
+        writes={"bridged_exit": layer(setting)},
         mask="coverage",
     )

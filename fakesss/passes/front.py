@@ -6,6 +6,7 @@ from fakesss.calls import Setting
 from fakesss.frame import Frame
 from fakesss.frame_graph import DEPTH, Pass, TextureSpec
 from fakesss.passes.geometry import Attribute, draw_mesh, normals, upload
+from fakesss.passes.layer import layer
 from fakesss.scene import Scene
 
 EXACT = "draws every face at every sample; its buffers hold float32"
@@ -28,7 +29,7 @@ def front(setting: Setting) -> Pass:
         reads=("mesh",) if lacking else ("mesh", "occlusion"),
         unread={"occlusion": lacking} if lacking else {},
         only_for={"occlusion": "surface"},
-        writes={"front": TextureSpec(size, 1), "surface": TextureSpec(size, 4), "coverage": TextureSpec(size, DEPTH)},
+        writes={"front": layer(setting), "surface": TextureSpec(size, 4), "coverage": TextureSpec(size, DEPTH)},
         read_masked=("surface",),
         depth_test=True,
     )

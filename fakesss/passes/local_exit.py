@@ -2,8 +2,9 @@
 
 from fakesss.calls import Setting
 from fakesss.frame import Frame
-from fakesss.frame_graph import Pass, TextureSpec
+from fakesss.frame_graph import Pass
 from fakesss.passes.geometry import draw_mesh, upload
+from fakesss.passes.layer import layer
 
 EXACT = "draws what is baked; the bake has the knob"
 
@@ -23,6 +24,6 @@ def local_exit(setting: Setting) -> Pass:
         "local_exit",
         draw,
         reads=("mesh", "local_thickness"),
-        writes={"local_exit": TextureSpec(setting.size, 1)},
+        writes={"local_exit": layer(setting)},
         depth_test=True,
     )

@@ -15,7 +15,7 @@ KNOBS = (
         error="the mean way to the other side, another at each vertex",
         unused=culled("local_thickness"),
         order=0.5,
-        baked=True,
+        baked="local_thickness",
     ),
 )
 

@@ -15,7 +15,7 @@ KNOBS = (
         error="the share of rays that hit nothing, another at each vertex",
         unused=culled("occlusion"),
         order=0.5,
-        baked=True,
+        baked="occlusion",
     ),
 )
 

@@ -2,8 +2,9 @@
 
 from fakesss.calls import Setting
 from fakesss.frame import Frame
-from fakesss.frame_graph import Pass, TextureSpec
+from fakesss.frame_graph import Pass
 from fakesss.passes.geometry import Cull, draw_mesh, shows_front_faces
+from fakesss.passes.layer import is_half, layer
 
 EXACT = "looks at every fragment; what lies within 1e-5 diameters of a layer is that layer"
 
@@ -22,7 +23,7 @@ def peel(setting: Setting) -> Pass:
         "peel",
         draw,
         reads=("mesh", "front"),
-        writes={"peeled": TextureSpec(setting.size, 1)},
+        writes={"peeled": layer(setting)},
         depth_test=True,
     )
 
@@ -46,7 +47,7 @@ def deeper(setting: Setting) -> list[Pass]:
             f"peel_{number}",
             draw,
             reads=("mesh", before),
-            writes={f"layer_{number}": TextureSpec(setting.size, 1)},
+            writes={f"layer_{number}": layer(setting)},
             depth_test=True,
         )
 
@@ -57,5 +58,6 @@ def step(frame: Frame, setting: Setting, before: str, cull: Cull, **defines: int
     """Draw what lies behind the layer `before`."""
     view = setting.view
     compared = {"clip": (view.near, view.far)} if defines.get("AS_PUBLISHED") else {}
-    program = frame.program("layer.vert", "peel.frag", {**view.projection, **compared}, defines, {before: "before"})
+    all_defines = {"HALF": is_half(setting), **defines}
+    program = frame.program("layer.vert", "peel.frag", {**view.projection, **compared}, all_defines, {before: "before"})
     draw_mesh(frame, frame.inputs["mesh"], view, program, [], cull)

@@ -8,6 +8,7 @@ from fakesss.calls import Setting
 from fakesss.frame import Frame
 from fakesss.frame_graph import Pass, TextureSpec
 from fakesss.passes.geometry import draw_mesh
+from fakesss.passes.layer import layer
 
 EXACT = "adds up every face's depth in float32"
 
@@ -32,6 +33,6 @@ def path_exit(setting: Setting) -> Pass:
         "path_exit",
         draw,
         reads=("front", "path", "coverage"),
-        writes={"path_exit": TextureSpec(setting.size, 1)},
+        writes={"path_exit": layer(setting)},
         mask="coverage",
     )

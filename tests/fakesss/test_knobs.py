@@ -53,11 +53,16 @@ def test_values_of_one_knob_differ_and_rise_where_they_are_counted(knob: Knob) -
         assert values == sorted(values, key=int)
 
 
+SECOND = {"second-layer faces", "second-layer resolution"}
 USED = [
-    ({}, {"second-layer faces", "layer method", "blur kernel", "occlusion rays", "supersampling"}),
+    ({}, {*SECOND, "layer method", "blur kernel", "depth format", "occlusion rays", "supersampling"}),
     ({"material.backlight": 0.0}, {"occlusion rays", "supersampling"}),
     ({"occlusion.method": "screen-space", "material.backlight": 0.0}, {"screen-space samples", "supersampling"}),
-    ({"layers.method": "peel", "occlusion.enabled": False}, {"layer method", "blur kernel", "supersampling"}),
+    (
+        {"layers.method": "peel", "occlusion.enabled": False},
+        {"layer method", "blur kernel", "depth format", "supersampling"},
+    ),
+    ({"style": "as published"}, {"occlusion rays", "supersampling"}),
     (
         {"light.shadows": True, "material.backlight": 0.0, "material.ambient": 0.0},
         {"shadow map size", "shadow filter", "supersampling"},

@@ -93,7 +93,7 @@ def reasons(changes: dict[str, Any], solid: bool, *names: str) -> dict[str, str]
 def test_reasons_name_the_setting() -> None:
     assert reasons({"material.backlight": 0.0, "occlusion.enabled": False}, True, "occlusion", "second", "blur") == {
         "occlusion": "not read by front: occlusion.enabled is false",
-        "second": "read only by thickness and blur, which are culled",
+        "second": "read only by thickness, soften_across and blur, which are culled",
         "blur": "not read by shade: material.backlight is 0",
     }
 
