@@ -17,6 +17,7 @@ from fakesss.problem import BadInput
 from fakesss.scene import Scene
 
 ROULETTE_AFTER = 1000  # scatterings; Mitsuba's roulette ends one path in twenty or more, which starves high albedos
+RADIUS = 1000.0  # of the bounding sphere in Mitsuba's lengths: its rays start (1 + |p|) 9e-5 beyond a surface
 BLOCK = 16  # pixels a side; Mitsuba's own choice depends on the number of threads, and with it the picture
 
 
@@ -28,7 +29,7 @@ def physical_scene(scene: Scene, medium: Medium | None, size_mm: float) -> dict[
     return {
         "integrator": integrator(medium),
         **lights(scene),
-        "object": opaque(scene) if medium is None else filled(medium, size_mm / 2),
+        "object": opaque(scene) if medium is None else filled(medium, size_mm / 2 / RADIUS),
     }
 
 
@@ -45,9 +46,9 @@ def opaque(scene: Scene) -> dict[str, Any]:
     return {"bsdf": {"type": "twosided", "bsdf": {"type": "diffuse", "reflectance": rgb(scene.material.diffuse)}}}
 
 
-def filled(medium: Medium, radius_mm: float) -> dict[str, Any]:
-    """An index-matched surface with the medium inside."""
-    extinction = sigma_t_prime(medium.sigma_s_prime, medium.sigma_a) * radius_mm
+def filled(medium: Medium, unit_mm: float) -> dict[str, Any]:
+    """An index-matched surface with the medium inside; `unit_mm` is Mitsuba's unit of length."""
+    extinction = sigma_t_prime(medium.sigma_s_prime, medium.sigma_a) * unit_mm
     scale = float(extinction.max())  # Mitsuba takes colours of a volume within 0..1 only
     albedo = alpha_prime(medium.sigma_s_prime, medium.sigma_a)
     inside = {"type": "homogeneous", "albedo": rgb(albedo), "sigma_t": rgb(extinction / scale), "scale": scale}
@@ -81,11 +82,11 @@ def emitter(light: Light, place: str) -> dict[str, Any]:
             f"scene: {place}.attenuation: {list(light.attenuation)}: light falls with the square of distance in "
             f"path-traced pictures; write [0, 0, kq], or make the light directional"
         )
-    where = [float(light.distance * part) for part in towards]
+    where = [float(RADIUS * light.distance * part) for part in towards]
     return {
         "type": "point",
         "position": where,
-        "intensity": rgb(math.pi * channel / quadratic for channel in light.diffuse),
+        "intensity": rgb(math.pi * RADIUS**2 * channel / quadratic for channel in light.diffuse),
     }
 
 
@@ -94,14 +95,14 @@ def sensor(scene: Scene, seed: int) -> dict[str, Any]:
     view = View.of(scene.camera, scene.size)
     right, up, towards = view.rotation
     # Mitsuba's camera looks along its z axis and has x to its left
-    columns = [*zip(-right, up, -towards, view.distance * towards, strict=True)]
+    columns = [*zip(-right, up, -towards, RADIUS * view.distance * towards, strict=True)]
     width, height = scene.size
     return {
         "type": "perspective",
         "fov": scene.camera.field_of_view,
         "fov_axis": "smaller",
-        "near_clip": view.near,
-        "far_clip": view.far,
+        "near_clip": RADIUS * view.near,
+        "far_clip": RADIUS * view.far,
         "to_world": [[float(number) for number in row] for row in columns] + [[0.0, 0.0, 0.0, 1.0]],
         "film": {
             "type": "hdrfilm",

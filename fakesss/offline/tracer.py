@@ -7,7 +7,7 @@ from numpy.typing import NDArray
 
 from fakesss.media import Medium
 from fakesss.mesh import Mesh
-from fakesss.offline.physical_scene import physical_scene, sensor
+from fakesss.offline.physical_scene import RADIUS, physical_scene, sensor
 from fakesss.problem import BadInput
 from fakesss.scene import Scene
 
@@ -55,7 +55,7 @@ class Tracer:
             properties[name] = self._mi.load_dict(part)
         shape = self._mi.Mesh("object", len(mesh.positions), len(mesh.faces), has_vertex_normals=True, props=properties)
         arrays = self._mi.traverse(shape)
-        arrays["vertex_positions"] = mesh.positions.ravel()
+        arrays["vertex_positions"] = mesh.positions.ravel() * np.float32(RADIUS)
         arrays["vertex_normals"] = mesh.normals.ravel()
         arrays["faces"] = mesh.faces.astype(np.uint32).ravel()
         arrays.update()
