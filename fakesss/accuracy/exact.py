@@ -8,7 +8,7 @@ It is the truth *of the technique*, on the mesh as it is: facets stay facets, an
 """
 
 from collections.abc import Callable, Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import Any
 
@@ -33,7 +33,7 @@ Floats = NDArray[np.float64]
 Floats32 = NDArray[np.float32]
 
 VERSION = 1  # raised whenever the values change, so that cached tiles are made again
-TILE = 64  # pixels a side: with 8 x 8 samples some 200 MB while it is made
+TILE = 48  # pixels a side: with 8 x 8 samples some 300 MB while it is made
 # Settings that say how well something is approximated, not what: no reference depends on them
 APPROXIMATIONS: Any = {
     "object": True,  # counts by its content
@@ -89,7 +89,7 @@ class Truth:
             return 0.0
         return {"thin": 0.0, "thick": 1.0}[self.scene.open_surface]
 
-    def seen(self, part: Part, finer: int = 1, margin: int = 0) -> Seen:
+    def rays(self, part: Part, finer: int = 1, margin: int = 0) -> Seen:
         """What the samples of a part of the picture see, `finer` times as many a side and `margin` more around."""
         size = self.setting.size
         rows, columns = (
@@ -97,25 +97,34 @@ class Truth:
         )
         return self.sight((size[0] * finer, size[1] * finer), columns, rows)
 
+    def seen(self, part: Part, softened: bool) -> Seen:
+        """What the samples of a part of the picture see; with the second layer `softened` by the dense blur."""
+        if not softened:
+            return self.rays(part)
+        size, view = self.setting.size, self.setting.view
+        finer = exact_blur.finer(self.scene, view, size[0])
+        kernel = exact_blur.kernel(self.scene, view, (size[0] * finer, size[1] * finer))
+        wide = self.rays(part, finer, kernel.margin)
+        chosen = np.pad(middles(self.shape(part), finer), kernel.margin)
+        second = kernel(wide.second.reshape(chosen.shape), finer)
+        return replace(wide.only(chosen.ravel()), second=second.ravel().astype(np.float64))
+
     def shape(self, part: Part) -> tuple[int, int]:
         """Rows and columns of samples in a part of the picture."""
         rows, columns = ((one.stop - one.start) * self.samples for one in part)
         return rows, columns
 
-    def thickness(self, part: Part, seen: Seen, softened: bool) -> Floats:
-        """t of the samples (h, w) in sphere diameters, 0..1; NaN where nothing is seen. `seen` is of that part."""
-        front = seen.front.reshape(self.shape(part))
-        second: NDArray[Any] = self.softened(part) if softened else seen.second.reshape(self.shape(part))
-        behind = np.clip((second - front) / 2, 0, 1)
-        return np.where(np.isnan(front), np.nan, np.where(np.isnan(second), self.open_thickness, behind))
+    def thickness(self, seen: Seen) -> Floats:
+        """t of samples (N,) in sphere diameters, 0..1; 0 where nothing is seen."""
+        behind = np.clip((seen.second - seen.front) / 2, 0, 1)
+        return np.where(seen.hit, np.where(np.isnan(seen.second), self.open_thickness, behind), 0.0)
 
-    def softened(self, part: Part) -> Floats32:
-        """The softened second layer (h, w) of a part's samples; of its own rays, which lie closer and reach farther."""
-        size, view = self.setting.size, self.setting.view
-        finer = exact_blur.finer(self.scene, view, size[0])
-        kernel = exact_blur.kernel(self.scene, view, (size[0] * finer, size[1] * finer))
-        rows, columns = (side * finer + 2 * kernel.margin for side in self.shape(part))
-        return kernel(self.seen(part, finer, kernel.margin).second.reshape(rows, columns), finer)
+
+def middles(shape: tuple[int, int], finer: int) -> NDArray[np.bool_]:
+    """Where on a grid of `finer` x `finer` cells a sample the samples' centres are."""
+    one = np.zeros((finer, finer), bool)
+    one[finer // 2, finer // 2] = True
+    return np.tile(one, shape)
 
 
 def exact_picture(scene: Scene, samples: int = 8) -> Floats32:
@@ -169,35 +178,33 @@ def tiles(width: int, height: int) -> Iterator[Part]:
 
 def picture(truth: Truth, part: Part) -> Floats32:
     """A part of the exact picture, (rows, columns, 4)."""
-    scene, seen = truth.scene, truth.seen(part)
+    scene, setting = truth.scene, truth.setting
+    seen = truth.seen(part, softened=not (setting.lacking("backlight") or setting.lacking("blur")))
     shaded = np.zeros((len(seen.hit), 4))
     shaded[:, :3] = 0 if scene.alpha else scene.background
     if seen.hit.any():
-        shaded[seen.hit, :3] = scene.exposure * radiance(truth, part, seen)
+        shaded[seen.hit, :3] = scene.exposure * radiance(truth, seen)
         shaded[seen.hit, 3] = 1
     n, (rows, columns) = truth.samples, truth.shape(part)
     averaged: Floats32 = shaded.reshape(rows // n, n, columns // n, n, 4).mean(axis=(1, 3)).astype(np.float32)
     return averaged
 
 
-def radiance(truth: Truth, part: Part, seen: Seen) -> Floats:
-    """Equation 3.6 at the samples of a part that see the object: linear RGB (M, 3), before exposure."""
-    scene, mesh, setting = truth.scene, truth.mesh, truth.setting
+def radiance(truth: Truth, seen: Seen) -> Floats:
+    """Equation 3.6 at the samples that see the object: linear RGB (M, 3), before exposure."""
+    mesh, setting, view = truth.mesh, truth.setting, truth.setting.view
     shares = corner_shares(mesh, seen.faces, seen.points)
     normals = normalised(interpolated(mesh, mesh.normals, seen.faces, shares))
     normals = np.where(seen.from_behind[:, None], -normals, normals)
     open_share = np.ones(len(shares))
     if truth.occlusion is not None:
         open_share = np.clip(interpolated(mesh, truth.occlusion, seen.faces, shares), 0, 1)
-    t = np.zeros(len(shares))
-    if not setting.lacking("backlight"):
-        t = truth.thickness(part, seen, softened=not setting.lacking("blur")).ravel()[seen.hit]
     lit = {}
     if setting.casting:
         starts = exact_light.onto_smooth_surface(mesh, seen.faces, shares, seen.points, seen.from_behind)
         lit = exact_light.lit_shares(setting, truth.caster, starts, normals)
-    view = setting.view
-    return illumination.lighting(scene, view, view.turn(seen.points), view.turn(normals), open_share, t, lit)
+    t = truth.thickness(seen)[seen.hit]
+    return illumination.lighting(truth.scene, view, view.turn(seen.points), view.turn(normals), open_share, t, lit)
 
 
 def exact_thickness(scene: Scene, samples: int = 1, softened: bool = False) -> Floats:
@@ -207,5 +214,8 @@ def exact_thickness(scene: Scene, samples: int = 1, softened: bool = False) -> F
     """
     check(scene)
     truth = Truth(scene, samples)
-    found = together(scene, lambda part: truth.thickness(part, truth.seen(part), softened), "exact thickness")
-    return np.asarray(np.nan_to_num(found))
+
+    def one(part: Part) -> Floats:
+        return truth.thickness(truth.seen(part, softened)).reshape(truth.shape(part))
+
+    return together(scene, one, "exact thickness")

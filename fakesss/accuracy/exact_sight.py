@@ -36,6 +36,12 @@ class Seen:
     faces: NDArray[np.int32]  # (M,) its triangles
     from_behind: Mask  # (M,) whether these are seen from the back
 
+    def only(self, chosen: Mask) -> "Seen":
+        """The same of some of the rays (N,)."""
+        of_hit = chosen[self.hit]
+        layers = self.hit[chosen], self.front[chosen], self.second[chosen]
+        return Seen(*layers, self.points[of_hit], self.faces[of_hit], self.from_behind[of_hit])
+
 
 class Sight:
     """Rays from a scene's camera through any samples: `Sight(scene, mesh, view)(size, columns, rows)`."""
@@ -120,7 +126,8 @@ class Sight:
         """Local thickness at the vertices (V,)."""
         from fakesss.local_thickness import bake_local_thickness
 
-        return bake_local_thickness(self.mesh, BAKE_RAYS, self.layers.reach).values
+        values: NDArray[np.float32] = bake_local_thickness(self.mesh, BAKE_RAYS, self.layers.reach).values
+        return values
 
 
 def padded(hits: Hits, columns: int) -> Hits:
@@ -149,7 +156,8 @@ def corner_shares(mesh: Mesh, faces: NDArray[np.int32], points: Floats) -> Float
     opposite = [np.cross(second - first, points - first) for first, second in ((b, c), (c, a), (a, b))]
     areas = np.maximum(np.stack([(part * normal).sum(axis=1) for part in opposite], axis=1), 0)
     whole = areas.sum(axis=1, keepdims=True)
-    return np.divide(areas, whole, out=np.full_like(areas, 1 / 3), where=whole > 0)
+    shares: Floats = np.divide(areas, whole, out=np.full_like(areas, 1 / 3), where=whole > 0)
+    return shares
 
 
 def interpolated(mesh: Mesh, values: NDArray[Any], faces: NDArray[np.int32], shares: Floats) -> Floats:
