@@ -141,9 +141,9 @@ def test_a_thick_sphere_in_uniform_light_reflects_as_a_half_space_and_nearly_as_
     whole = inside(traced) & (mu > 0.3)
     expected = np.stack([1 - H(mu[whole], a) * np.sqrt(1 - a) for a in ALBEDOS], axis=-1)
     assert_within_noise(traced.image[whole][:, :3] - expected, traced.standard_error[whole], CURVED)
-    straight = inside(traced) & (mu > 0.97)
+    straight = inside(traced) & (mu > 0.9)
     dipole = total_diffuse_reflectance(DENSE.sigma_s_prime, DENSE.sigma_a, 1.0)
-    np.testing.assert_allclose(traced.image[straight][:, :3].mean(axis=0), dipole, atol=0.045)
+    np.testing.assert_allclose(traced.image[straight][:, :3].mean(axis=0), dipole, atol=0.055)
 
 
 @pytest.mark.parametrize("name", ["marble", "ketchup", "spectralon"])
