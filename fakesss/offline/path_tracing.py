@@ -6,11 +6,10 @@ Same mesh, camera and lights as the shader's picture of the scene. What they lea
 import time
 from dataclasses import dataclass
 from importlib.metadata import PackageNotFoundError, version
-from typing import Annotated, Any
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
-from pydantic import Field, field_validator
 from tqdm import tqdm
 
 from fakesss import cache
@@ -19,57 +18,25 @@ from fakesss.lighting_terms import alone
 from fakesss.media import Medium, medium_named, sigma_t_prime
 from fakesss.mesh import Mesh
 from fakesss.offline.physical_scene import physical_scene
+from fakesss.offline.settings import OPAQUE, ROUND, PathTracing
 from fakesss.offline.silhouette import Silhouette, silhouette
 from fakesss.offline.tally import Shelf, Tally
-from fakesss.offline.tracer import ROUND, VARIANT, Tracer
-from fakesss.problem import BadInput, Strict
+from fakesss.offline.tracer import VARIANT, Tracer
+from fakesss.problem import BadInput
 from fakesss.scene import Scene
 from fakesss.shapes import load_object
 from fakesss.solidity import is_solid
 
+__all__ = ["OPAQUE", "PathTraced", "PathTracing", "path_traced"]
+
 Float32 = NDArray[np.float32]
 
 VERSION = 1  # raised whenever the radiance changes, so that kept rounds are not gone on from
-OPAQUE = "opaque"  # in place of a medium: a Lambertian surface of the scene's diffuse reflectance
-SURE_ROUNDS = 4  # before these a picture's noise is itself too noisy to stop at
 KEEP_EVERY = 10.0  # seconds between two tallies kept
 LEFT_OUT = (
     "refraction and reflection at the boundary (index-matched)",
     "the phase function (isotropic, reduced scattering coefficient)",
 )
-
-
-class PathTracing(Strict):
-    """How a picture is path-traced."""
-
-    medium: str = Field(description='a measured medium (docs/accuracy.md), or "opaque": Lambertian, material.diffuse')
-    size_mm: Annotated[float, Field(gt=0, le=1e5)] = Field(30.0, description="diameter of the bounding sphere, mm")
-    samples: Annotated[int, Field(ge=2 * ROUND, le=1 << 20, multiple_of=ROUND)] = Field(
-        256, description="at most, per pixel"
-    )
-    noise: Annotated[float, Field(gt=0)] | None = Field(
-        None, description="stops once RMS standard error over RMS radiance is at or below it; empty: all samples"
-    )
-    seed: Annotated[int, Field(ge=0, lt=1 << 32)] = Field(0, description="of the random numbers")
-    highlights: bool = Field(True, description="adds the shader's own specular term")
-
-    @field_validator("medium")
-    @classmethod
-    def known_medium(cls, name: str) -> str:
-        if name.lower() == OPAQUE:
-            return OPAQUE
-        try:
-            return medium_named(name, "medium").name
-        except BadInput as error:
-            raise ValueError(str(error).removeprefix("medium: ")) from None
-
-    def rounds(self, noises: list[float]) -> int:
-        """How many rounds the picture has in the end, as far as their noises so far tell."""
-        most = self.samples // ROUND
-        if self.noise is not None:
-            low = (number for number, value in enumerate(noises, 1) if value <= self.noise)
-            most = min(most, next((number for number in low if number >= SURE_ROUNDS), most))
-        return most
 
 
 @dataclass(frozen=True)

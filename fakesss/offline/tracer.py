@@ -8,13 +8,13 @@ from numpy.typing import NDArray
 from fakesss.media import Medium
 from fakesss.mesh import Mesh
 from fakesss.offline.physical_scene import RADIUS, physical_scene, sensor
+from fakesss.offline.settings import ROUND
 from fakesss.problem import BadInput
 from fakesss.scene import Scene
 
 Floats = NDArray[np.float64]
 
 VARIANT = "scalar_rgb"  # works on any processor, and gives equal bytes on any number of threads
-ROUND = 4  # samples a pixel in a round
 
 
 def mitsuba() -> Any:
