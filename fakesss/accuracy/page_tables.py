@@ -1,0 +1,105 @@
+"""The tables of the page of `fakesss tradeoff`, and a line of numbers for a level."""
+
+from collections.abc import Mapping, Sequence
+from typing import Any
+
+from fakesss.accuracy.page_curves import Curve, Point, curve_of
+from fakesss.accuracy.page_numbers import rounded
+from fakesss.accuracy.page_parts import Table
+
+ERRORS = ("RMSE", "largest", "FLIP, mean", "FLIP in 99.9 %")
+
+
+def overview(document: Mapping[str, Any]) -> Table:
+    """A line a knob: the recommended level beside the knob's reference."""
+    rows = []
+    for knob in document["knobs"]:
+        curve = curve_of(knob)
+        chosen = next(point for point in curve.points if point.text == curve.recommended)
+        best = next((point for point in curve.points if point.text == curve.reference), None)
+        rows.append([curve.name, chosen.text, time_text(curve, chosen), *errors_text(chosen), curve.reference,
+                     time_text(curve, best) if best else ""])  # fmt: skip
+    return Table(
+        "table-overview", "Every knob at its recommended level",
+        ["knob", "recommended", "time", *ERRORS, "reference", "its time"], rows, text_columns=2,
+        note="Errors are against the picture of the knob’s own reference, all else being equal. Seconds are those of a "
+        "bake, spent once; milliseconds are those of every picture. A reference without a time was not timed.",
+    )  # fmt: skip
+
+
+def points_table(curve: Curve, anchor: str) -> Table:
+    """Every level of a knob."""
+    texts = [point.text for point in curve.points]
+    times = ["bake, s"] if curve.baked else ["time, ms", "95 % band"]
+    rows = [
+        [f"{point.text} (reference)" if point.text == curve.reference else point.text, rounded(point.cost),
+         *([] if curve.baked else [band_text(point)]), *errors_text(point)]
+        for point in curve.points
+    ]  # fmt: skip
+    return Table(
+        anchor, f"Levels of {curve.name}", [curve.name, *times, *ERRORS], rows,
+        chosen=texts.index(curve.recommended) if curve.recommended in texts else None,
+    )  # fmt: skip
+
+
+def published_table(curve: Curve, published: Mapping[str, Any], anchor: str) -> Table:
+    """Somebody's printed times beside ours, each also as a multiple of that at the first level of both."""
+    ours = {point.text: point.cost for point in curve.points}
+    theirs = {str(each["value"]): float(each["ms"]) for each in published["points"]}
+    offline = {str(each["value"]): rounded(each["offline_s"]) for each in published["points"]}
+    first = next(value for value in theirs if value in ours)
+    rows = [
+        [value, *beside(ours.get(value), ours[first]), *beside(theirs[value], theirs[first]), offline[value]]
+        for value in theirs
+    ]
+    head = [curve.name, "ours, ms", f"ours / at {first}", "published, ms", f"published / at {first}", "offline, s"]
+    return Table(
+        anchor, f"{curve.name} beside published times", head, rows,
+        note=f"Published: {published['source']}, of another scene on another machine; how times grow compares.",
+    )  # fmt: skip
+
+
+def beside(time: float | None, first: float) -> tuple[str, str]:
+    """A time, and how many times the first it is; nothing of a level that was not measured."""
+    return ("", "") if time is None else (rounded(time), rounded(time / first, 2))
+
+
+def errors_text(point: Point) -> list[str]:
+    """In the order of ERRORS."""
+    everywhere = "" if point.flip_everywhere is None else rounded(point.flip_everywhere)
+    return [rounded(point.rmse), rounded(point.max_abs), rounded(point.flip), everywhere]
+
+
+def band_text(point: Point) -> str:
+    """The 95 % band of a time."""
+    return f"{rounded(point.low)}–{rounded(point.high)}" if point.low and point.high else ""
+
+
+def time_text(curve: Curve, point: Point) -> str:
+    """With its unit."""
+    return f"{rounded(point.cost)} {curve.unit}"
+
+
+def numbers_line(curve: Curve, point: Point | None) -> str:
+    """Cost and errors in one line; nothing where a level was not timed."""
+    if point is None:
+        return ""
+    names = ("RMSE", "largest", "FLIP", "in 99.9 %")
+    errors = (f"{name} {text}" for name, text in zip(names, errors_text(point), strict=True) if text)
+    return " · ".join([time_text(curve, point), *errors])
+
+
+def combinations_table(
+    names: Sequence[str], entries: Sequence[Mapping[str, Any]], marks: Sequence[str], points: Sequence[Point]
+) -> Table:
+    """The front by rising time: what each of the knobs `names` is set to; `marks` name the presets."""
+    rows = [
+        [rounded(point.cost), band_text(point), *errors_text(point), mark,
+         *(str(entry["values"].get(name, "")) for name in names)]
+        for entry, mark, point in zip(entries, marks, points, strict=True)
+    ]  # fmt: skip
+    return Table(
+        "table-combinations", "Combinations that nothing beats, by rising time",
+        ["time, ms", "95 % band", *ERRORS, "preset", *names], rows, text_columns=0,
+        note="Errors are against the exact picture, with all that every knob is off by.",
+    )  # fmt: skip
