@@ -5,8 +5,9 @@
 #include "common_layers.glsl"
 
 #define EVERY 2  // n
-#define GUIDE_RANGE 0.1  // sphere diameters: front layers farther apart belong to different parts
 #define LEAST 1e-4  // of a weight, so that whoever is left is taken
+
+uniform float guide_range;  // sphere radii: front layers farther apart belong to different parts
 
 // 0 where none of the four has a second layer behind `z1`, which is the front layer at `place`.
 float upsampled(sampler2D layer, sampler2D front, float z1, vec2 place) {
@@ -21,7 +22,7 @@ float upsampled(sampler2D layer, sampler2D front, float z1, vec2 place) {
             float guide = texture(front, (texel * float(EVERY) + 0.5) / samples).r;
             vec2 side = abs(1.0 - vec2(x, y) - share);
             float near = max(side.x * side.y, LEAST);
-            float alike = max(1.0 - abs(guide - z1) / (GUIDE_RANGE * DIAMETER), LEAST);
+            float alike = max(1.0 - abs(guide - z1) / guide_range, LEAST);
             float weight = z2 < z1 ? 0.0 : near * alike;
             sum += weight * (z2 - z1);
             weights += weight;

@@ -8,7 +8,7 @@ from fakesss.frame import Frame
 from fakesss.frame_graph import Pass, TextureSpec
 from fakesss.knob import Knob, Level, culled, first_of
 from fakesss.passes.soften import kernel_of, tap_defines, tap_uniforms
-from fakesss.passes.sparse import why_not_sparse
+from fakesss.passes.sparse import upsampling, why_not_sparse
 from fakesss.passes.thickness import open_thickness
 
 NONE = Level("none", {"blur.enabled": False})
@@ -19,7 +19,7 @@ KNOBS = (
         levels=(NONE, *SOFTENED),
         reference=SOFTENED[-1],
         error="how soft the second layer's edges are",
-        unused=first_of(no_thickness, as_published, culled("blur", {"blur.enabled": True})),
+        unused=first_of(no_thickness, as_published, culled("blur")),
         beside="5x5",
     ),
 )
@@ -67,6 +67,7 @@ def softened_from(setting: Setting) -> tuple[str, dict[str, str]]:
 def how(setting: Setting, source: str) -> tuple[dict[str, Any], dict[str, int]]:
     """Uniforms and permutation of `glsl/common_blurred_thickness.glsl`."""
     if source == "softened":
-        return {}, {"SPARSE": 1, "EVERY": setting.scene.layers.resolution}
+        uniforms, defines = upsampling(setting)
+        return uniforms, {"SPARSE": 1, **defines}
     published = {"AS_PUBLISHED": int(setting.published)}
     return tap_uniforms(setting), {**published, **tap_defines(setting, source == "softened_across")}

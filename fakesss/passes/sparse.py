@@ -11,7 +11,7 @@ from fakesss.knob import Knob, Level, culled, first_of
 from fakesss.passes.back_faces import faces_of, source
 from fakesss.passes.geometry import draw_mesh
 from fakesss.passes.layer import layer
-from fakesss.sparse_layer import placing, sparse_size
+from fakesss.sparse_layer import guide_range, placing, sparse_size
 
 ALL = Level("all", {"layers.resolution": 1})
 KNOBS = (
@@ -57,11 +57,18 @@ def sparse_back_faces(setting: Setting) -> Pass:
     )
 
 
+def upsampling(setting: Setting) -> tuple[dict[str, float], dict[str, int]]:
+    """Uniforms and defines of `glsl/common_upsample.glsl`."""
+    every = setting.scene.layers.resolution
+    return {"guide_range": guide_range(setting.view, setting.size, every)}, {"EVERY": every}
+
+
 def upsample(setting: Setting) -> Pass:
     """Reads `front` and `sparse_back`; writes `upsampled_back`: the nearest back face at every sample, about."""
+    uniforms, defines = upsampling(setting)
     return Pass(
         "upsample",
-        lambda frame: frame.fill("upsample.frag", {}, EVERY=setting.scene.layers.resolution),
+        lambda frame: frame.fill("upsample.frag", uniforms, **defines),
         reads=("front", "sparse_back", "coverage"),
         writes={"upsampled_back": layer(setting)},
         mask="coverage",
