@@ -1,7 +1,7 @@
 """The `fakesss` command: composes the four packages. Each command imports what it needs when it runs.
 
-The commands themselves stand in `cli_study`, `cli_analysis`, `cli_power`, `cli_picture`, `cli_measure` and
-`cli_survey`.
+The commands themselves stand in `cli_study`, `cli_analysis`, `cli_power`, `cli_picture`, `cli_measure`,
+`cli_fit` and `cli_survey`.
 """
 
 import json
@@ -32,6 +32,7 @@ def commands() -> None:
 def main() -> None:
     """Runs the command; bad input is one sentence on standard error and exit code 2."""
     import fakesss.cli_analysis
+    import fakesss.cli_fit
     import fakesss.cli_measure
     import fakesss.cli_picture
     import fakesss.cli_power

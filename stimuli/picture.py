@@ -29,9 +29,10 @@ TIMES = ("bench", "bench_bake", "bench_tables", "direct", "direct_light", "savin
 LOOKS = ("inspect", "views", "contact_sheet", "explanation", "graph_drawing", "graph_layout")
 PLOTS = ("profile_plot", "relief", "lighting_terms")
 CHECKS = ("browser", "depth_checks", "doctor", "hard_edges", "reference")
-FITTING = ("fit", "fit_model", "fit_solver", "fit_start", "fit_uncertainty")
+FITTING = ("cli_fit", "fit", "fit_model", "fit_solver", "fit_start", "fit_uncertainty")
+FITTED = ("fit_matched", "fit_leftover", "fit_report", "fit_files")
 ROOMS = ("accuracy",)  # folders of nothing but such
-NOT_DRAWING = frozenset((*COMMANDS, *TIMES, *LOOKS, *PLOTS, *CHECKS, *FITTING))
+NOT_DRAWING = frozenset((*COMMANDS, *TIMES, *LOOKS, *PLOTS, *CHECKS, *FITTING, *FITTED))
 # What thickness does not depend on; a sweep of any of it measures thickness once.
 ELSEWHERE = ("object", "light", "lights", "shadow", "exposure", "background", "alpha", "occlusion", "blur")
 SURFACE = set(Material.model_fields) - {"thickness"}

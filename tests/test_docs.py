@@ -8,6 +8,7 @@ from pathlib import Path
 import pytest
 
 import fakesss.cli_analysis
+import fakesss.cli_fit
 import fakesss.cli_measure
 import fakesss.cli_picture
 import fakesss.cli_power

@@ -1,10 +1,9 @@
 """Which parameters of the empirical shader come nearest to a given picture, and what is left over.
 
-Least squares in linear radiance over the pixels in which the shader draws the object, without highlights. Every start
-is searched to its end with equal weights; the best is then searched again with each pixel weighted by 1 / (noise^2 +
-misfit^2), its own standard error and the mean square of what no parameters explain. Where the shader cannot match, that
-is nearly equal weights; where it can, it is the weighting of least variance. Pixels that fireflies left noisy count
-less, so the loss is a plain square.
+Least squares in linear radiance over the pixels in which the shader draws the object, without highlights, all weighted
+alike. Weights from each pixel's own standard error were tried and do harm: it comes from the same samples as the pixel,
+so those that came out dark count more, and the fit is too dark. Nor is the loss robust: it would drop fireflies, which
+a path tracer's mean needs. Noise only adds a constant to the error, and standard errors to the parameters.
 """
 
 from collections.abc import Iterator
@@ -22,9 +21,6 @@ from fakesss.problem import BadInput
 from fakesss.scene import Material, Scene
 
 KINDS = ("first-interval", "bridged", "total-path")  # of thickness, tried beside the scene's own
-LEAST = (
-    0.01  # of the mean noise variance: what a pixel's variance counts as at least, or one without noise would be all
-)
 SAME = 1e-6  # relative difference of errors that is none; of equally good thicknesses the scene's own is kept
 STARTS = 8
 
@@ -39,7 +35,7 @@ class Target:
 
 @dataclass(frozen=True)
 class Try:
-    """One start, with equal weights, and where it ended."""
+    """One start, and where it ended."""
 
     start: Material
     end: Material
@@ -78,17 +74,17 @@ def fit(start: Scene, target: Target, starts: int = STARTS, seed: int = 0, quiet
                 bar.update()
     least = min(found.rmse for found in tries)
     best = next(found for found in tries if found.rmse <= least * (1 + SAME))
-    return polished(bases[best.end.thickness], target, best, start, tuple(tries))
+    return concluded(problem_of(bases[best.end.thickness], target), target.standard_error, best, start, tuple(tries))
 
 
 def problem_of(made: Basis, target: Target) -> Problem:
-    """Equal weights; what the background adds is taken off the target."""
+    """What is to be matched: the target less what the background adds."""
     if target.image.shape != (*made.covered.shape, 4):
         raise BadInput(f"target: its shape {target.image.shape} is not the scene's; make it at the scene's size")
     wanted = target.image[made.covered][:, :3].astype(np.float64) - made.behind()
     if not (np.isfinite(wanted).all() and (wanted > 0).any()):
         raise BadInput("target: is black where the object is, or not finite, so there is nothing to fit; give it light")
-    return Problem(made, wanted, np.ones_like(wanted))
+    return Problem(made, wanted)
 
 
 def searched(problem: Problem, start: Material, starts: int, seed: int) -> Iterator[Try]:
@@ -103,26 +99,21 @@ def searched(problem: Problem, start: Material, starts: int, seed: int) -> Itera
 def tried(problem: Problem, point: Floats, ended: Ended, start: Material) -> Try:
     """A search in the words of the scene."""
     from_, to = (fitted(problem, at, start) for at in (point, ended.point))
-    return Try(from_, to, float(np.sqrt(ended.cost)), ended.evaluations, ended.converged, ended.point)
+    return Try(from_, to, ended.rmse, ended.evaluations, ended.converged, ended.point)
 
 
-def polished(made: Basis, target: Target, best: Try, start: Scene, tries: tuple[Try, ...]) -> Fit:
-    """The best try searched on with the weights of its own residuals; with Kb held where nothing tells it from wb."""
-    plain, notes = problem_of(made, target), []
-    noise = target.standard_error[made.covered].astype(np.float64)
-    problem = replace(plain, weight=weights(plain.linear(best.point).residual, noise))
-    first = start.material.model_copy(update={"thickness": best.end.thickness})
-    point, material = refined(problem, best.point, first)
-    if spread_of_weight(problem, material, problem.linear(point).residual) > max(material.diffuse):
+def concluded(problem: Problem, noise: NDArray[np.float32], best: Try, start: Scene, tries: tuple[Try, ...]) -> Fit:
+    """The best try as a scene; searched on with Kb held where nothing tells it from wb."""
+    material, notes = best.end, []
+    if spread_of_weight(problem, material, problem.linear(best.point).residual) > max(material.diffuse):
+        first = start.material.model_copy(update={"thickness": material.thickness})
         problem = replace(problem, tint=first.diffuse_weight / (max(first.diffuse) or 1.0))
-        point, material = refined(problem, point, first)
-        notes.append(
-            "The colour is so grey that diffuse_weight cannot be told from backlight; it was left as it began."
-        )
+        material = fitted(problem, search(problem, best.point).point, first)
+        notes.append("The target does not tell diffuse_weight from colour and backlight; it was left as it began.")
     notes += told(at_bounds(material))
     scene = start.replace({f"material.{name}": getattr(material, name) for name in Material.model_fields})
-    errors = standard_errors(problem, material, noise)
-    return Fit(scene, start, tries, errors, made.picture(material), tuple(notes))
+    errors = standard_errors(problem, material, noise[problem.basis.covered].astype(np.float64))
+    return Fit(scene, start, tries, errors, problem.basis.picture(material), tuple(notes))
 
 
 def told(bound: set[str]) -> list[str]:
@@ -133,19 +124,3 @@ def told(bound: set[str]) -> list[str]:
     else:
         nothing = []
     return nothing + [f"material.{name} ended at its bound." for name in sorted(bound)]
-
-
-def refined(problem: Problem, point: Floats, start: Material) -> tuple[Floats, Material]:
-    """Where one more search ends, and its material."""
-    ended = search(problem, point)
-    return ended.point, fitted(problem, ended.point, start)
-
-
-def weights(residual: Floats, noise: Floats) -> Floats:
-    """Square roots of the weights (P, 3), 1 on average square; see the top of the file."""
-    by_noise = noise**2
-    misfit = max(float((residual**2).mean() - by_noise.mean()), LEAST * float(by_noise.mean()))
-    if not by_noise.any():
-        return np.ones_like(noise)
-    weight = 1 / (by_noise + misfit)
-    return np.asarray(np.sqrt(weight / weight.mean()))

@@ -35,26 +35,25 @@ class Linear:
     """The best factors at one point of the search."""
 
     factors: Floats  # (3 or 4,): ka, wd and the backlight's parts, for k as it was searched
-    residual: Floats  # (P, 3), weighted: model less wanted
+    residual: Floats  # (P, 3): model less wanted
     span: Floats  # (3 P, up to 4), orthonormal: of the columns whose factor is above 0
 
 
 @dataclass(frozen=True)
 class Problem:
-    """`wanted` (P, 3) is what the object itself sends in the wanted picture; `weight` (P, 3) multiplies residuals.
+    """`wanted` (P, 3) is what the object itself sends in the wanted picture.
 
     `tint`: Kb / max(Kd), if that is held; None to search it.
     """
 
     basis: Basis
     wanted: Floats
-    weight: Floats
     tint: float | None = None
 
     @cached_property
     def anchor(self) -> int:
         """The channel of most light, to whose Kd the others are related."""
-        return int(((self.weight * self.wanted) ** 2).sum(axis=0).argmax())
+        return int((self.wanted**2).sum(axis=0).argmax())
 
     def colour(self, point: Floats) -> Floats:
         """k (3,), 1 in the anchor's channel, of a `point` (ln r, two logarithms of ratios)."""
@@ -66,21 +65,19 @@ class Problem:
         return np.stack([-np.eye(CHANNELS)[k.argmin()], most]) if self.tint is None else self.tint * most[None]
 
     def columns(self, point: Floats) -> Floats:
-        """(P, 3, 3 or 4): weighted pictures, of which the factors are ka, wd and the backlight's parts."""
+        """(P, 3, 3 or 4): pictures, of which the factors are ka, wd and the backlight's parts."""
         k = self.colour(point)
         through = self.basis.backlight(float(np.exp(point[0])))[0][:, None]
         glows = (through * (k + tint) for tint in self.tints(k) @ k)
-        terms = (k * self.basis.ambient, k * self.basis.diffuse, *glows)
-        return np.stack([self.weight * term for term in terms], axis=2)
+        return np.stack([k * self.basis.ambient, k * self.basis.diffuse, *glows], axis=2)
 
     def linear(self, point: Floats) -> Linear:
         """The factors that fit best at `point`."""
         columns = self.columns(point)
-        flat, wanted = columns.reshape(-1, columns.shape[2]), (self.weight * self.wanted).ravel()
+        flat = columns.reshape(-1, columns.shape[2])
         q, r = np.linalg.qr(flat)
-        factors = nnls(r, q.T @ wanted)[0]
-        residual = columns @ factors - self.weight * self.wanted
-        return Linear(factors, residual, np.linalg.qr(flat[:, factors > 0])[0])
+        factors = nnls(r, q.T @ self.wanted.ravel())[0]
+        return Linear(factors, columns @ factors - self.wanted, np.linalg.qr(flat[:, factors > 0])[0])
 
     def residual(self, point: Floats) -> Floats:
         """(3 P,), with the best factors."""
@@ -97,7 +94,7 @@ class Problem:
             slope = np.repeat(glows @ self.tints(k)[:, channel] * through, CHANNELS, axis=1)
             slope[:, channel] += own[:, channel]
             slopes.append(k[channel] * slope)
-        flat = np.stack([(self.weight * slope).ravel() for slope in slopes], axis=1)
+        flat = np.stack([slope.ravel() for slope in slopes], axis=1)
         return np.asarray(flat - solved.span @ (solved.span.T @ flat))
 
 
@@ -106,7 +103,7 @@ class Ended:
     """Where one start ended."""
 
     point: Floats
-    cost: float  # mean of the squared weighted residuals
+    rmse: float  # over pixels and channels
     evaluations: int
     converged: bool
 
@@ -118,7 +115,8 @@ def search(problem: Problem, start: Floats) -> Ended:
     found = least_squares(
         problem.residual, inside, problem.jacobian, (low, high), "trf", ftol=TOLERANCE, xtol=TOLERANCE, gtol=TOLERANCE
     )
-    return Ended(found.x, 2 * float(found.cost) / problem.wanted.size, int(found.nfev), bool(found.success))
+    rmse = float(np.sqrt(2 * found.cost / problem.wanted.size))
+    return Ended(found.x, rmse, int(found.nfev), bool(found.success))
 
 
 def bounds() -> tuple[Floats, Floats]:

@@ -1,8 +1,8 @@
 """How far the noise of the wanted picture leaves fitted parameters open, and whether the picture holds Kb at all.
 
 Linearised at the fit, all parameters free at once but those at a bound and the largest channel of Kd, which only sets
-the scale of the others. With J the weighted derivatives of the picture, G the inverse of J'J and V the weighted
-variance of the pixels' noise, the standard errors are the square roots of the diagonal of G J' V J G (White 1980: right
+the scale of the others. With J the derivatives of the picture, G the inverse of J'J and V the variance of
+the pixels' noise, the standard errors are the square roots of the diagonal of G J' V J G (White 1980: right
 whatever the weights). They tell what another rendering of as many samples would change, not how wrong the model is.
 """
 
@@ -23,19 +23,19 @@ def standard_errors(problem: Problem, material: Material, noise: Floats) -> dict
     Not in it: what is held or at a bound. Infinite: what the picture does not depend on.
     """
     held = at_bounds(material) | (set() if problem.tint is None else {WEIGHT})
-    names, flat = weighted(problem, {n: s for n, s in derivatives(problem, material).items() if n not in held})
+    names, flat = columns(problem, material, held)
     inverse, lost = inverted(flat)
-    noisy = (problem.weight * noise).ravel()[:, None] * flat
+    noisy = noise.ravel()[:, None] * flat
     variance = np.maximum(np.diag(inverse @ (noisy.T @ noisy) @ inverse), 0.0)
     return dict(zip(names, map(float, np.where(lost, np.inf, np.sqrt(variance))), strict=True))
 
 
 def spread_of_weight(problem: Problem, material: Material, residual: Floats) -> float:
-    """The standard error of Kb if the weighted `residual` (P, 3) were noise; infinite if Kb is not in the picture."""
+    """The standard error of Kb if the `residual` (P, 3) were noise; infinite if Kb is not in the picture."""
     if not material.backlight:
         return 0.0
     held = at_bounds(material) - {WEIGHT}
-    names, flat = weighted(problem, {n: s for n, s in derivatives(problem, material).items() if n not in held})
+    names, flat = columns(problem, material, held)
     inverse, lost = inverted(flat)
     at = names.index(WEIGHT)
     return float("inf") if lost[at] else float(np.sqrt(max(inverse[at, at], 0.0) * (residual**2).mean()))
@@ -51,9 +51,10 @@ def inverted(flat: Floats) -> tuple[Floats, Floats]:
     return inverse, (vectors[:, ~kept] ** 2).sum(axis=1) > CLOSE
 
 
-def weighted(problem: Problem, slopes: dict[str, Floats]) -> tuple[list[str], Floats]:
-    """Names, and the weighted derivatives as columns (3 P, parameters)."""
-    return list(slopes), np.stack([(problem.weight * slope).ravel() for slope in slopes.values()], axis=1)
+def columns(problem: Problem, material: Material, held: set[str]) -> tuple[list[str], Floats]:
+    """Names of the parameters that are not `held`, and the derivatives by them as columns (3 P, parameters)."""
+    free = {name: slope.ravel() for name, slope in derivatives(problem, material).items() if name not in held}
+    return list(free), np.stack(list(free.values()), axis=1)
 
 
 def derivatives(problem: Problem, material: Material) -> dict[str, Floats]:

@@ -1,0 +1,175 @@
+"""The shader fitted to a measured medium, and what the fit is worth: errors, times, and what is left over."""
+
+import statistics
+import time
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from fakesss.accuracy.errors import Errors, errors
+from fakesss.lights import LARGEST
+from fakesss.media import medium_named
+from fakesss.offline.fit import Fit, Target, Try, fit
+from fakesss.offline.fit_leftover import leftover
+from fakesss.offline.fit_matched import matched
+from fakesss.offline.fit_model import matte
+from fakesss.offline.fit_solver import EXPONENTS
+from fakesss.offline.fit_start import starting_scene
+from fakesss.offline.path_tracing import PathTraced, path_traced
+from fakesss.offline.settings import PathTracing
+from fakesss.renderer import shared_renderer
+from fakesss.scene import Material, Scene
+
+NUMBERS = ("thickness_exponent", "backlight", "diffuse_weight", "diffuse_contribution", "ambient")
+DRAWN = 15  # warm draws that the shader's time is the median of
+METHOD = (
+    "Bounded least squares in linear radiance over the pixels that the shader covers, all weighted alike, without "
+    "highlights on either side; separable (variable projection), from several starts and thicknesses.",
+    "Kd, ka, wd, wb and Kb are known up to one factor: the largest channel of Kd is held at the medium's reflectance.",
+    "FLIP and RMSE are of the pixels that either picture covers, and of a real rendering of the fitted scene.",
+)
+
+
+@dataclass(frozen=True)
+class Report:
+    """What `fakesss fit` tells and writes."""
+
+    scene: Scene  # fitted, with the highlights that it had
+    document: dict[str, Any]  # JSON
+    pictures: dict[str, NDArray[np.float32]]  # target, fitted, start: (H, W, 4), without highlights
+
+
+def fit_medium(
+    scene: Scene, settings: PathTracing, starts: int, seed: int, label: str, quiet: bool | None = None
+) -> Report:
+    """Fit `scene` to its own path-traced picture; `label` is what the scene is called. `BadInput` for bad input."""
+    medium, plain = medium_named(settings.medium, "--to"), settings.model_copy(update={"highlights": False})
+    scene = scene.replace({"alpha": False})
+    traced = path_traced(scene, plain, quiet=quiet)
+    began = time.perf_counter()
+    target = Target(traced.image, traced.standard_error)
+    found = fit(starting_scene(scene, medium, settings.size_mm), target, starts, seed, quiet)
+    taken = time.perf_counter() - began
+    fitted, start = (shared_renderer().render(matte(each)).image for each in (found.scene, found.start))
+    near = errors(fitted, traced.image)
+    document = {
+        "scene": label,
+        "medium": medium.name,
+        "size_mm": settings.size_mm,
+        "width": scene.size[0],
+        "height": scene.size[1],
+        "parameters": parameters(found),
+        "thickness": thicknesses(found),
+        "starts": [tried(one) for one in found.tries],
+        **numbers(near),
+        "start_errors": numbers(errors(start, traced.image)),
+        "noise": floor(traced, near, seed),
+        "model_max_abs": float(np.abs(fitted - found.picture).max()),
+        "seconds": {"shader": drawing_time(matte(found.scene)), "path_traced": traced.seconds, "fit": taken},
+        "leftover": leftover(found.scene, fitted, traced.image, traced.standard_error),
+        "matched": matched(scene, plain, traced.image, near.flip, quiet),
+        "notes": list(found.notes),
+        "method": list(METHOD),
+        "target": traced.provenance,
+        "gl_renderer": shared_renderer().gpu.renderer,
+        "scene_sha256": found.scene.sha256(),
+    }
+    pictures = {"target": traced.image, "fitted": fitted, "start": start}
+    return Report(found.scene, concluded(document), pictures)
+
+
+def concluded(document: dict[str, Any]) -> dict[str, Any]:
+    """With how many times as fast the shader is, and all of it in one sentence."""
+    seconds, equal = document["seconds"], document["matched"]
+    speed_up = seconds["path_traced"] / seconds["shader"]
+    equal["speed_up"] = equal["seconds"] / seconds["shader"]
+    sentence = (
+        f"{duration(seconds['shader'])} against {duration(seconds['path_traced'])} at FLIP {document['flip']:.2f}; for "
+        f"that FLIP the path tracer needs {' '.join((equal['bound'], duration(equal['seconds']))).strip()} "
+        f"({equal['samples']:.0f} samples a pixel), {equal['speed_up']:,.0f} times as long."
+    )
+    return {**document, "speed_up": speed_up, "sentence": sentence}
+
+
+def numbers(found: Errors) -> dict[str, float]:
+    """The errors that are numbers."""
+    return {"rmse": found.rmse, "max_abs": found.max_abs, "flip": found.flip}
+
+
+def floor(traced: PathTraced, near: Errors, seed: int) -> dict[str, float]:
+    """What the target's own noise sets: errors of it with as much noise again; and RMSE with noise taken out.
+
+    The noise added is Gaussian, which a path tracer's is not in single pixels.
+    """
+    generator, again = np.random.default_rng(seed), traced.image.copy()
+    again[..., :3] += generator.standard_normal(traced.standard_error.shape) * traced.standard_error
+    alike = errors(again, traced.image)
+    misfit = float(np.sqrt(max(near.rmse**2 - alike.rmse**2, 0.0)))
+    return {**numbers(alike), "relative": traced.noise, "samples": traced.samples, "misfit_rmse": misfit}
+
+
+def parameters(found: Fit) -> dict[str, Any]:
+    """Each fitted field: where it started and ended, its bounds, and its standard error from the target's noise.
+
+    Without a standard error: what is held, at a bound, or not in the picture.
+    """
+    start, end, errors_ = found.start.material, found.scene.material, found.standard_error
+    top = max(end.diffuse)
+    bounds = {"thickness_exponent": EXPONENTS, "diffuse_weight": (-min(end.diffuse), top)}
+    table = {
+        f"material.{name}": entry(getattr(start, name), getattr(end, name), *bounds.get(name, (0.0, LARGEST)))
+        | {"standard_error": finite(errors_.get(name))}
+        for name in NUMBERS
+    }
+    colour = entry(list(start.diffuse), list(end.diffuse), [0.0] * 3, [top] * 3)
+    spread = [finite(errors_.get(f"diffuse.{channel}")) for channel in range(3)]
+    return {**table, "material.diffuse": colour | {"standard_error": spread}}
+
+
+def entry(start: Any, fitted: Any, low: Any, high: Any) -> dict[str, Any]:
+    return {"start": start, "fitted": fitted, "low": low, "high": high}
+
+
+def finite(value: float | None) -> float | None:
+    """None for what JSON has no number for."""
+    return value if value is not None and np.isfinite(value) else None
+
+
+def thicknesses(found: Fit) -> dict[str, Any]:
+    """What the backlight passes through: the kinds that were tried, and the least RMSE of each."""
+    kinds = dict.fromkeys(one.end.thickness for one in found.tries)
+    least = {kind: min(one.rmse for one in found.tries if one.end.thickness == kind) for kind in kinds}
+    tried = [{"thickness": kind, "rmse": rmse} for kind, rmse in least.items()]
+    return {"start": found.start.material.thickness, "fitted": found.scene.material.thickness, "tried": tried}
+
+
+def tried(one: Try) -> dict[str, Any]:
+    """Where a start was, and where it ended."""
+    facts = {"thickness": one.end.thickness, "start": of(one.start), "ended": of(one.end), "rmse": one.rmse}
+    return {**facts, "evaluations": one.evaluations, "converged": one.converged}
+
+
+def of(material: Material) -> dict[str, Any]:
+    """The fitted fields of a material."""
+    return {**{name: getattr(material, name) for name in NUMBERS}, "diffuse": list(material.diffuse)}
+
+
+def drawing_time(scene: Scene) -> float:
+    """Seconds of one picture, read back: the median of warm draws."""
+    renderer = shared_renderer()
+    renderer.render(scene)
+    taken = []
+    for _ in range(DRAWN):
+        began = time.perf_counter()
+        renderer.render(scene)
+        taken.append(time.perf_counter() - began)
+    return statistics.median(taken)
+
+
+def duration(seconds: float) -> str:
+    """`0.021 s`, `12 s`, `3.4 min`, `2.1 h`."""
+    if seconds < 120:
+        return f"{seconds:.2g} s" if seconds < 10 else f"{seconds:.0f} s"
+    return f"{seconds / 60:.3g} min" if seconds < 7200 else f"{seconds / 3600:.3g} h"
