@@ -161,10 +161,14 @@ def upright(value: Any) -> Any:
 
 
 def idle_settings(scene: Scene, plan: Plan) -> tuple[str, ...]:
-    """A sentence for a setting that a study may vary in vain."""
-    if scene.layers.faces is None or "coarse_mesh" in (node.name for node in plan.kept):
-        return ()
-    return ("layers.faces does nothing here: the picture needs no second layer of a solid.",)
+    """A sentence for each setting that a study may vary in vain."""
+    kept = {node.name for node in plan.kept}
+    asked = {
+        "layers.faces": scene.layers.faces is not None and "coarse_mesh" not in kept,
+        "layers.resolution": scene.layers.resolution > 1 and "sparse_back_faces" not in kept,
+    }
+    why = "the picture needs no second layer of a solid"
+    return tuple(f"{setting} does nothing here: {why}." for setting, idle in asked.items() if idle)
 
 
 def not_finite(pixels: int) -> str:
