@@ -64,7 +64,7 @@ def reading(url: str) -> Iterator[list[dict[str, Any]]]:
     enough = threading.Event()
 
     def reload() -> None:
-        with httpx.Client(headers=JSON) as client:
+        with httpx.Client(headers=JSON, timeout=60) as client:
             while not enough.is_set() or not pages:
                 response = client.get(url)
                 assert response.status_code == 200
