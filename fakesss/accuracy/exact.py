@@ -18,7 +18,8 @@ from tqdm import tqdm
 
 from fakesss import cache, illumination
 from fakesss.accuracy import exact_blur, exact_light
-from fakesss.accuracy.exact_sight import BAKE_RAYS, Seen, Sight, corner_shares, interpolated
+from fakesss.accuracy.exact_light import BAKE_RAYS
+from fakesss.accuracy.exact_sight import Seen, Sight, corner_shares, interpolated
 from fakesss.calls import Setting
 from fakesss.camera import View
 from fakesss.mesh import Mesh
@@ -54,6 +55,7 @@ class Truth:
 
     scene: Scene
     samples: int  # a side, in a pixel
+    rays: int = BAKE_RAYS  # a vertex, of what is baked
 
     @cached_property
     def mesh(self) -> Mesh:
@@ -69,7 +71,7 @@ class Truth:
 
     @cached_property
     def sight(self) -> Sight:
-        return Sight(self.scene, self.mesh, self.setting.view)
+        return Sight(self.scene, self.mesh, self.setting.view, self.rays)
 
     @cached_property
     def caster(self) -> Caster:
@@ -80,7 +82,7 @@ class Truth:
         """[a] at the vertices (V,), or None where everything sees the whole hemisphere."""
         if self.setting.lacking("occlusion"):
             return None
-        return exact_light.vertex_occlusion(self.mesh, self.scene.occlusion)
+        return exact_light.vertex_occlusion(self.mesh, self.scene.occlusion, self.rays)
 
     @property
     def open_thickness(self) -> float:
@@ -89,7 +91,7 @@ class Truth:
             return 0.0
         return {"thin": 0.0, "thick": 1.0}[self.scene.open_surface]
 
-    def rays(self, part: Part, finer: int = 1, margin: int = 0) -> Seen:
+    def cast(self, part: Part, finer: int = 1, margin: int = 0) -> Seen:
         """What the samples of a part of the picture see, `finer` times as many a side and `margin` more around."""
         size = self.setting.size
         rows, columns = (
@@ -100,11 +102,11 @@ class Truth:
     def seen(self, part: Part, softened: bool) -> Seen:
         """What the samples of a part of the picture see; with the second layer `softened` by the dense blur."""
         if not softened:
-            return self.rays(part)
+            return self.cast(part)
         size, view = self.setting.size, self.setting.view
         finer = exact_blur.finer(self.scene, view, size[0])
         kernel = exact_blur.kernel(self.scene, view, (size[0] * finer, size[1] * finer))
-        wide = self.rays(part, finer, kernel.margin)
+        wide = self.cast(part, finer, kernel.margin)
         chosen = np.pad(middles(self.shape(part), finer), kernel.margin)
         second = kernel(wide.second.reshape(chosen.shape), finer)
         return replace(wide.only(chosen.ravel()), second=second.ravel().astype(np.float64))
@@ -127,15 +129,16 @@ def middles(shape: tuple[int, int], finer: int) -> NDArray[np.bool_]:
     return np.tile(one, shape)
 
 
-def exact_picture(scene: Scene, samples: int = 8) -> Floats32:
+def exact_picture(scene: Scene, samples: int = 8, rays: int = BAKE_RAYS) -> Floats32:
     """The exact picture of `scene`, (H, W, 4) float32 as `render` gives: linear RGB over the background, and coverage.
 
-    The mean of `samples` x `samples` samples a pixel. Made tile by tile and kept by content: interrupted, it goes on
-    where it stopped. `BadInput` for style "as published", whose flaws have no truth.
+    The mean of `samples` x `samples` samples a pixel, with `rays` a vertex for what is baked. Made tile by tile and
+    kept by content: interrupted, it goes on where it stopped. `BadInput` for style "as published", whose flaws have no
+    truth.
     """
     check(scene)
-    truth = Truth(scene, samples)
-    key = {"version": VERSION, "rays": BAKE_RAYS, **content(truth)}
+    truth = Truth(scene, samples, rays)
+    key = {"version": VERSION, **content(truth)}
 
     def one(part: Part) -> Floats32:
         shape = (part[0].stop - part[0].start, part[1].stop - part[1].start, 4)
@@ -151,7 +154,7 @@ def exact_picture(scene: Scene, samples: int = 8) -> Floats32:
 def content(truth: Truth) -> dict[str, Any]:
     """What an exact picture depends on, JSON; a setting that only approximates is not among it."""
     settings = truth.scene.model_dump(mode="json", exclude=APPROXIMATIONS)
-    return {"scene": settings, "mesh": truth.mesh.sha256, "samples": truth.samples, "tile": TILE}
+    return {"scene": settings, "mesh": truth.mesh.sha256, "samples": truth.samples, "rays": truth.rays, "tile": TILE}
 
 
 def check(scene: Scene) -> None:

@@ -8,7 +8,6 @@ import numpy as np
 from numpy.typing import NDArray
 
 from fakesss import illumination
-from fakesss.accuracy.exact_sight import BAKE_RAYS
 from fakesss.calls import Setting
 from fakesss.camera import View
 from fakesss.hemisphere import mean_over_hemisphere
@@ -21,12 +20,13 @@ from fakesss.scene import Occlusion
 Floats = NDArray[np.float64]
 Mask = NDArray[np.bool_]
 
+BAKE_RAYS = 16_384  # a vertex, of whatever is baked
 SHADOW_CLEARANCE = 1e-4  # sphere radii, along the normal, from a point to where its rays to the lights start
 
 
-def vertex_occlusion(mesh: Mesh, settings: Occlusion) -> NDArray[np.float32]:
-    """[a] at each vertex (V,), from the cache where it was baked before."""
-    return bake_occlusion(mesh, BAKE_RAYS, settings.sampling).values
+def vertex_occlusion(mesh: Mesh, settings: Occlusion, rays: int = BAKE_RAYS) -> NDArray[np.float32]:
+    """[a] at each vertex (V,) from so many rays, from the cache where it was baked before."""
+    return bake_occlusion(mesh, rays, settings.sampling).values
 
 
 def point_occlusion(caster: Caster, points: Floats, normals: Floats, settings: Occlusion, rays: int = 4096) -> Floats:

@@ -22,8 +22,6 @@ from fakesss.vertex_normals import normalised
 Floats = NDArray[np.float64]
 Mask = NDArray[np.bool_]
 
-BAKE_RAYS = 16_384  # a vertex, of whatever is baked
-
 
 @dataclass(frozen=True)
 class Seen:
@@ -44,10 +42,13 @@ class Seen:
 
 
 class Sight:
-    """Rays from a scene's camera through any samples: `Sight(scene, mesh, view)(size, columns, rows)`."""
+    """Rays from a scene's camera through any samples: `Sight(scene, mesh, view, rays)(size, columns, rows)`.
 
-    def __init__(self, scene: Scene, mesh: Mesh, view: View) -> None:
-        self.mesh, self.view = mesh, view
+    `rays` a vertex are baked where `material.thickness` is "local".
+    """
+
+    def __init__(self, scene: Scene, mesh: Mesh, view: View, rays: int) -> None:
+        self.mesh, self.view, self.rays = mesh, view, rays
         self.kind, self.layers = scene.material.thickness, scene.layers
 
     @cached_property
@@ -118,7 +119,7 @@ class Sight:
         return np.where(hit & (hits.sides[:, 1] != 0), depths[:, 0] + inside, np.nan)
 
     def local(self, faces: NDArray[np.int32], points: Floats) -> Floats:
-        """Baked thickness (M,) at points on `faces`, in sphere diameters, from `BAKE_RAYS` rays a vertex."""
+        """Baked thickness (M,) at points on `faces`, in sphere diameters."""
         return interpolated(self.mesh, self.baked_local, faces, corner_shares(self.mesh, faces, points))
 
     @cached_property
@@ -126,7 +127,7 @@ class Sight:
         """Local thickness at the vertices (V,)."""
         from fakesss.local_thickness import bake_local_thickness
 
-        values: NDArray[np.float32] = bake_local_thickness(self.mesh, BAKE_RAYS, self.layers.reach).values
+        values: NDArray[np.float32] = bake_local_thickness(self.mesh, self.rays, self.layers.reach).values
         return values
 
 
