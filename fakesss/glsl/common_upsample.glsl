@@ -5,9 +5,10 @@
 #include "common_layers.glsl"
 
 #define EVERY 2  // n
+#define STEEPEST 8.0  // rise from texel to texel, in their width: front layers farther apart belong to different parts
 #define LEAST 1e-4  // of a weight, so that whoever is left is taken
 
-uniform float guide_range;  // sphere radii: front layers farther apart belong to different parts
+uniform float texel_width;  // at the sphere's centre, sphere radii
 
 // 0 where none of the four has a second layer behind `z1`, which is the front layer at `place`.
 float upsampled(sampler2D layer, sampler2D front, float z1, vec2 place) {
@@ -22,10 +23,11 @@ float upsampled(sampler2D layer, sampler2D front, float z1, vec2 place) {
             float guide = texture(front, (texel * float(EVERY) + 0.5) / samples).r;
             vec2 side = abs(1.0 - vec2(x, y) - share);
             float near = max(side.x * side.y, LEAST);
-            float alike = max(1.0 - abs(guide - z1) / guide_range, LEAST);
-            float weight = z2 < z1 ? 0.0 : near * alike;
+            float alike = max(1.0 - abs(guide - z1) / (STEEPEST * texel_width), LEAST);
+            // a thin plate's own back, seen at up to 45 degrees, may lie so far before its front one texel away
+            float weight = is_empty(z2) || z2 < z1 - texel_width ? 0.0 : near * alike;
             sum += weight * (z2 - z1);
             weights += weight;
         }
-    return weights > 0.0 ? z1 + sum / weights : 0.0;
+    return weights > 0.0 ? z1 + max(sum / weights, 0.0) : 0.0;
 }

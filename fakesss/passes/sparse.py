@@ -11,7 +11,7 @@ from fakesss.knob import Knob, Level, culled, first_of
 from fakesss.passes.back_faces import faces_of, source
 from fakesss.passes.geometry import draw_mesh
 from fakesss.passes.layer import layer
-from fakesss.sparse_layer import guide_range, placing, sparse_size
+from fakesss.sparse_layer import texel_width, placing, sparse_size
 
 ALL = Level("all", {"layers.resolution": 1})
 KNOBS = (
@@ -32,8 +32,10 @@ def why_not_sparse(setting: Setting) -> str:
         return "layers.resolution is 1"
     if scene.material.thickness != "first-interval":
         return f'layers.resolution is for the first interval, and material.thickness is "{scene.material.thickness}"'
-    if scene.layers.method == "peel" or not setting.outside_only:
-        return "layers.resolution is for the back faces of a solid: a peel compares depths of one sample with another"
+    if scene.layers.method == "peel":
+        return 'layers.resolution is for back faces, and layers.method is "peel"'
+    if not setting.outside_only:
+        return "layers.resolution is for solids seen from outside: of others, an empty sample says nothing of the next"
     return ""
 
 
@@ -60,7 +62,7 @@ def sparse_back_faces(setting: Setting) -> Pass:
 def upsampling(setting: Setting) -> tuple[dict[str, float], dict[str, int]]:
     """Uniforms and defines of `glsl/common_upsample.glsl`."""
     every = setting.scene.layers.resolution
-    return {"guide_range": guide_range(setting.view, setting.size, every)}, {"EVERY": every}
+    return {"texel_width": texel_width(setting.view, setting.size, every)}, {"EVERY": every}
 
 
 def upsample(setting: Setting) -> Pass:
