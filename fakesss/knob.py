@@ -37,7 +37,7 @@ class Knob:
     unused: Reason
     order: float | None = None  # expected p of an error that falls as value^-p; None where no such law is known
     beside: Value | None = None  # the level at which other knobs are measured; None: the reference
-    baked: bool = False  # made once and kept: costs seconds before the picture, nothing in it
+    baked: str = ""  # what it makes: once and kept, costing seconds before the picture and nothing in it
 
     @property
     def paths(self) -> tuple[str, ...]:
@@ -53,6 +53,11 @@ class Knob:
     def besides(self) -> Level:
         """The level that it stays at while others are measured."""
         return self.reference if self.beside is None else self.level(self.beside)
+
+    @property
+    def best(self) -> int:
+        """Place of the most exact of its levels: the reference, or the last where that lies beyond."""
+        return self.levels.index(self.reference) if self.reference in self.levels else len(self.levels) - 1
 
     def level(self, value: Value) -> Level:
         """The level of this value."""

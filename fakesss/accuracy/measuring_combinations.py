@@ -1,0 +1,167 @@
+"""Combinations of knob levels, measured in one or several scenes; of several, the worst counts.
+
+A combination's time is quoted as any other (`measuring`), its errors are against the exact picture of each scene. What
+is baked costs no time in a picture, so baked knobs are not searched: they stay at their recommended levels.
+"""
+
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass
+from functools import cached_property
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from fakesss.accuracy.errors import errors
+from fakesss.accuracy.measuring import Timing, Way, drawn, in_rounds, timing
+from fakesss.accuracy.measuring_knobs import Curve, Rig, error_facts
+from fakesss.accuracy.tradeoff_search import Costs, Effects, Setting, front, pareto_local_search
+from fakesss.knob import Knob, Value
+from fakesss.scene import Scene
+
+ERRORS = ("rmse", "max_abs", "flip", "flip_everywhere")
+LOOKS = 2  # rounds of a combination while searching; what is kept is measured again with as many as a knob
+
+
+@dataclass(frozen=True)
+class Combination:
+    """One level of every knob, measured in each of the scenes."""
+
+    values: Mapping[str, Value]  # by knob
+    settings: Mapping[str, Any]  # by scene path
+    timings: tuple[Timing, ...]
+    errors: tuple[Mapping[str, float], ...]
+
+    @property
+    def worst(self) -> Timing:
+        """Of the scene in which it takes longest."""
+        return max(self.timings, key=lambda one: one.ms)
+
+    def error(self, name: str) -> float:
+        """The largest of any scene."""
+        return max(found[name] for found in self.errors)
+
+    @property
+    def costs(self) -> Costs:
+        """Milliseconds, mean FLIP, FLIP that 99.9% of the pixels do not exceed."""
+        return self.worst.ms, self.error("flip"), self.error("flip_everywhere")
+
+    def facts(self) -> dict[str, Any]:
+        """An entry of the document's `combinations`."""
+        worst = {name: self.error(name) for name in ERRORS}
+        each = [{**one.facts(), **found} for one, found in zip(self.timings, self.errors, strict=True)]
+        several = {"scenes": each} if len(each) > 1 else {}
+        return {
+            "values": dict(self.values),
+            "settings": dict(self.settings),
+            **self.worst.facts(),
+            **worst,
+            **several,
+        }
+
+
+@dataclass(frozen=True)
+class Place:
+    """A scene whose knobs were measured one by one."""
+
+    rig: Rig
+    curves: Mapping[str, Curve]  # by knob's name, of the knobs that the scene uses
+
+    @cached_property
+    def baseline(self) -> Way:
+        return drawn(self.rig.renderer, self.rig.scene)
+
+    @cached_property
+    def baseline_ms(self) -> float:
+        """Of the picture beside which knobs were measured, over all of that."""
+        return float(np.median([level.timing.baseline_ms for curve in self.curves.values() for level in curve.levels]))
+
+    def scene(self, settings: Mapping[str, Any]) -> Scene:
+        """With what of `settings` is of its knobs."""
+        own = {path for curve in self.curves.values() for path in curve.knob.paths}
+        return self.rig.scene.replace({path: value for path, value in settings.items() if path in own})
+
+
+@dataclass(frozen=True)
+class Combinations:
+    """The search over the knobs of some scenes."""
+
+    places: Sequence[Place]
+    knobs: tuple[Knob, ...]  # used by one of the scenes
+
+    @property
+    def searched(self) -> tuple[Knob, ...]:
+        return tuple(knob for knob in self.knobs if not knob.baked)
+
+    def curves(self, knob: Knob) -> list[Curve]:
+        """In every scene that uses it."""
+        return [place.curves[knob.name] for place in self.places if knob.name in place.curves]
+
+    @property
+    def effects(self) -> Effects:
+        """What each level does alone: milliseconds and errors in the scene where they are worst."""
+        return [[self.effect(knob, number) for number in range(len(knob.levels))] for knob in self.searched]
+
+    def effect(self, knob: Knob, number: int) -> Costs:
+        """Of one level of one knob."""
+        idle = [place.baseline_ms for place in self.places if knob.name not in place.curves]
+        levels = [curve.levels[number] for curve in self.curves(knob)]
+        worst = [max(getattr(level.errors, name) for level in levels) for name in ("flip", "flip_everywhere")]
+        return (max([*idle, *(level.timing.ms for level in levels)]), *worst)
+
+    def recommended(self, knob: Knob) -> Value:
+        """The level recommended in every scene: the most exact of them."""
+        values = [level.value for level in knob.levels]
+        return max((curve.recommended.value for curve in self.curves(knob)), key=values.index)
+
+    def values(self, setting: Setting) -> dict[str, Value]:
+        """The level of every knob."""
+        chosen = {knob.name: knob.levels[place].value for knob, place in zip(self.searched, setting, strict=True)}
+        return {knob.name: chosen.get(knob.name) or self.recommended(knob) for knob in self.knobs}
+
+    def settings(self, values: Mapping[str, Value]) -> dict[str, Any]:
+        """The scene fields that these levels are."""
+        levels = [knob.level(values[knob.name]) for knob in self.knobs]
+        return {path: value for level in levels for path, value in level.changes.items()}
+
+    def search(self, budget: int, step: Callable[[], object]) -> list[dict[str, Value]]:
+        """The values worth measuring well: what nothing else beats, of at most `budget` that were looked at."""
+
+        def look(setting: Setting) -> Costs:
+            found = self.measured([self.values(setting)], LOOKS)[0]
+            step()
+            return found.costs
+
+        found = pareto_local_search(self.effects, tuple(knob.best for knob in self.searched), look, budget)
+        return [self.values(setting) for setting in front(found)]
+
+    def measured(self, all_values: Sequence[Mapping[str, Value]], rounds: int) -> list[Combination]:
+        """These combinations, in turn with one another and the baseline, scene after scene."""
+        settings = [self.settings(values) for values in all_values]
+        by_scene = [kept(place, settings, rounds) for place in self.places]
+        return [
+            Combination(
+                values, chosen, tuple(times[number] for times, _ in by_scene), tuple(e[number] for _, e in by_scene)
+            )
+            for number, (values, chosen) in enumerate(zip(all_values, settings, strict=True))
+        ]
+
+
+def kept(
+    place: Place, settings: Sequence[Mapping[str, Any]], rounds: int
+) -> tuple[list[Timing], list[dict[str, float]]]:
+    """Times and errors of each of `settings` in one scene, as measured now or by the run that was interrupted."""
+    scenes = [place.scene(one) for one in settings]
+
+    def make() -> dict[str, NDArray[Any]]:
+        found = [errors(place.rig.renderer.render(scene).image, place.rig.exact) for scene in scenes]
+        ways = {number: drawn(place.rig.renderer, scene) for number, scene in enumerate(scenes)}
+        pairs = in_rounds(ways, place.baseline, rounds)
+        numbers = [list(error_facts(one).values()) for one in found]
+        return {"times": np.array([pairs[number] for number in ways]), "errors": np.array(numbers)}
+
+    what = {"scenes": [scene.model_dump(mode="json") for scene in scenes], "rounds": rounds}
+    shapes = {"times": (len(scenes), rounds, 2), "errors": (len(scenes), len(ERRORS))}
+    arrays, _ = place.rig.kept(what, shapes, make)
+    times = [timing([(one, base) for one, base in each], place.baseline_ms) for each in arrays["times"]]
+    return times, [dict(zip(ERRORS, map(float, row), strict=True)) for row in arrays["errors"]]

@@ -1,0 +1,182 @@
+"""One knob at a time: what each level costs and is off by, all other knobs at their best.
+
+Supersampling and screen-space samples multiply every other cost, so while another knob is measured they stay where
+their modules say (`Knob.beside`). A level's error is that of its picture against the picture of the knob's reference,
+so it is this knob's own; `total` is against the exact picture, with what all the other knobs are still off by.
+"""
+
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from fakesss.accuracy.convergence import fitted_order
+from fakesss.accuracy.errors import JUST_NOTICEABLE, Errors, errors
+from fakesss.accuracy.measuring import Timing, drawn, in_rounds, measuring_renderer, timing
+from fakesss.accuracy.pareto import non_dominated
+from fakesss.accuracy.tradeoff_kept import Kept
+from fakesss.frame_graph import Bake
+from fakesss.inspect import compiled
+from fakesss.knob import Knob, Value
+from fakesss.renderer import Renderer
+from fakesss.savings import baking_seconds
+from fakesss.scene import Scene
+
+Floats32 = NDArray[np.float32]
+FEWEST = 3  # points that an order is fitted to
+
+
+@dataclass
+class Rig:
+    """A scene with every knob in its place beside the one that is measured, and what it is compared with."""
+
+    scene: Scene
+    exact: Floats32  # (H, W, 4), the exact picture
+    rounds: int
+    kept: Kept
+    renderer: Renderer
+    step: Callable[[], object]  # told of each picture that was timed
+
+    @classmethod
+    def of(
+        cls, scene: Scene, knobs: Sequence[Knob], exact: Floats32, rounds: int, kept: Kept, step: Callable[[], object]
+    ) -> "Rig":
+        beside = {path: value for knob in knobs for path, value in knob.besides.changes.items()}
+        return cls(scene.replace(beside), exact, rounds, kept, measuring_renderer(), step)
+
+    def picture(self, changes: Mapping[str, Any]) -> Floats32:
+        """With so much otherwise."""
+        return self.renderer.render(self.scene.replace(changes)).image
+
+
+@dataclass(frozen=True)
+class Level:
+    """One level of a knob, measured."""
+
+    value: Value
+    changes: Mapping[str, Any]
+    timing: Timing
+    errors: Errors  # against the knob's reference
+    total: Errors  # against the exact picture
+    bake_seconds: float | None
+    picture: Floats32
+
+    @property
+    def cost(self) -> float:
+        """Seconds of a bake, milliseconds of anything else."""
+        return self.timing.ms if self.bake_seconds is None else self.bake_seconds
+
+    def facts(self) -> dict[str, Any]:
+        """A point of the `tradeoff` document."""
+        baked = {} if self.bake_seconds is None else {"bake_seconds": self.bake_seconds}
+        times = {"value": self.value, "settings": dict(self.changes), **self.timing.facts(), **baked}
+        return {**times, **error_facts(self.errors), "total": error_facts(self.total)}
+
+
+def error_facts(found: Errors) -> dict[str, float]:
+    """Errors by the document's names."""
+    names = ("rmse", "max_abs", "flip", "flip_everywhere")
+    return {name: float(getattr(found, name)) for name in names}
+
+
+@dataclass(frozen=True)
+class Curve:
+    """A knob's levels, measured."""
+
+    knob: Knob
+    levels: tuple[Level, ...]
+    reference: Floats32
+
+    @property
+    def recommended(self) -> Level:
+        """The cheapest whose difference from the reference stays below just noticeable; the best where none does."""
+        fine = [level for level in self.levels if level.errors.flip_everywhere < JUST_NOTICEABLE]
+        best = min(self.levels, key=lambda level: (level.errors.flip_everywhere, level.cost))
+        return min(fine, key=lambda level: level.cost) if fine else best
+
+    def facts(self) -> dict[str, Any]:
+        """An entry of the document's `knobs`."""
+        front = non_dominated([(level.cost, level.errors.flip) for level in self.levels])
+        return {
+            "name": self.knob.name,
+            "sets": list(self.knob.paths),
+            "reference": self.knob.reference.value,
+            "error": self.knob.error,
+            "baked": bool(self.knob.baked),
+            "order": order(self.knob, self.levels),
+            "points": [level.facts() for level in self.levels],
+            "pareto": [self.levels[place].value for place in front],
+            "recommended": self.recommended.value,
+            "because": f"cheapest below a FLIP of {JUST_NOTICEABLE:.3f} in 99.9% of the pixels"
+            if self.recommended.errors.flip_everywhere < JUST_NOTICEABLE
+            else f"smallest error; none stays below a FLIP of {JUST_NOTICEABLE:.3f} in 99.9% of the pixels",
+        }
+
+
+def measured(rig: Rig, knob: Knob) -> Curve:
+    """Every level of `knob`, in turn with the picture beside it."""
+    reference = rig.picture(knob.reference.changes)
+    times, seconds = kept_times(rig, knob)
+    baseline_ms = float(np.median(times[..., 1]))
+    made = []
+    for place, level in enumerate(knob.levels):
+        picture = rig.picture(level.changes)
+        made.append(
+            Level(
+                level.value,
+                level.changes,
+                timing([(one, base) for one, base in times[place]], baseline_ms),
+                errors(picture, reference),
+                errors(picture, rig.exact),
+                seconds[place] if knob.baked else None,
+                picture,
+            )
+        )
+    return Curve(knob, tuple(made), reference)
+
+
+def kept_times(rig: Rig, knob: Knob) -> tuple[NDArray[np.float64], list[float]]:
+    """(levels, rounds, 2) milliseconds of each level and of the picture beside it; seconds of each level's bake."""
+
+    def make() -> dict[str, NDArray[Any]]:
+        # what is baked differently is drawn alike, so one level stands for all
+        timed = knob.levels[:1] if knob.baked else knob.levels
+        ways = {level.value: drawn(rig.renderer, rig.scene.replace(level.changes)) for level in timed}
+        pairs = in_rounds(ways, drawn(rig.renderer, rig.scene), rig.rounds, rig.step)
+        times = np.array([pairs.get(level.value, pairs[timed[0].value]) for level in knob.levels])
+        return {"times": times, "seconds": np.array([bake(rig, knob, level.changes) for level in knob.levels])}
+
+    shapes = {"times": (len(knob.levels), "rounds", 2), "seconds": (len(knob.levels),)}
+    what = {"knob": knob.name, "levels": [str(level.value) for level in knob.levels], "rounds": rig.rounds}
+    arrays, there = rig.kept({**what, "scene": rig.scene.model_dump(mode="json")}, shapes, make)
+    if there:
+        for _ in range(arrays["times"].shape[0] * arrays["times"].shape[1]):
+            rig.step()
+    return arrays["times"], [float(each) for each in arrays["seconds"]]
+
+
+def bake(rig: Rig, knob: Knob, changes: Mapping[str, Any]) -> float:
+    """Seconds of what `knob` bakes, without any cache; 0 where it bakes nothing."""
+    if not knob.baked:
+        return 0.0
+    scene = rig.scene.replace(changes)
+    nodes = [node for node in compiled(scene).kept if isinstance(node, Bake) and node.name == knob.baked]
+    return baking_seconds(rig.renderer, scene, nodes)
+
+
+def order(knob: Knob, levels: Sequence[Level]) -> dict[str, float] | None:
+    """p of an RMSE that falls as value^-p, by least squares of the logarithms; None where the levels are no numbers.
+
+    Levels from half of the reference on are left out: what the reference itself is off by shows in them.
+    """
+    if knob.order is None:
+        return None
+    known = [(int(level.value), level.errors.rmse) for level in levels if level.errors.rmse > 0]
+    points = [point for point in known if 2 * point[0] <= int(knob.reference.value)]
+    if len(points) < FEWEST:
+        return None
+    counts, left = zip(*points, strict=True)
+    found = fitted_order(counts, left)
+    return {"fitted": found.order, "low": found.ci_low, "high": found.ci_high, "expected": knob.order}

@@ -1,0 +1,89 @@
+"""Three settings of all knobs that are worth their time: `interactive`, `survey`, `reference`.
+
+- `interactive`: the smallest mean FLIP within a budget of time for a picture.
+- `survey`: the cheapest whose FLIP against the exact picture stays below a just noticeable difference everywhere,
+  that is in 99.9% of the pixels (`errors.JUST_NOTICEABLE`, `errors.Errors.flip_everywhere`).
+- `reference`: the best of every knob.
+
+Where nothing keeps the budget or the limit, the nearest to it is taken, and the preset says so.
+"""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import tomli_w
+
+from fakesss.accuracy.errors import JUST_NOTICEABLE
+from fakesss.accuracy.measuring_combinations import Combination
+from fakesss.knob import Knob
+
+BUDGET_MS = 33.0  # thirty pictures a second
+HEAD = """# Settings worth their time, for `quality` in a scene: written by the command below, not by hand.
+# Of each preset: what it was measured to cost and to be off by, in the worst of the scenes; then the fields it sets.
+"""
+
+
+@dataclass(frozen=True)
+class Preset:
+    """A combination, and why it was taken."""
+
+    combination: Combination
+    because: str
+    met: bool  # whether it keeps what it promises
+
+    def facts(self) -> dict[str, Any]:
+        """An entry of the document's `presets`."""
+        return {**self.combination.facts(), "because": self.because, "met": self.met}
+
+
+def chosen(measured: Sequence[Combination], reference: Combination, budget_ms: float) -> dict[str, Preset]:
+    """The three presets among what was measured."""
+    return {
+        "interactive": interactive(measured, budget_ms),
+        "survey": survey(measured),
+        "reference": Preset(reference, "the best of every knob", True),
+    }
+
+
+def interactive(measured: Sequence[Combination], budget_ms: float) -> Preset:
+    """The smallest error within the budget."""
+    within = [one for one in measured if one.worst.ms <= budget_ms]
+    if within:
+        best = min(within, key=lambda one: (one.error("flip"), one.worst.ms))
+        return Preset(best, f"smallest mean FLIP within {budget_ms:g} ms a picture", True)
+    fastest = min(measured, key=lambda one: one.worst.ms)
+    return Preset(fastest, f"the fastest; nothing keeps within {budget_ms:g} ms a picture", False)
+
+
+def survey(measured: Sequence[Combination]) -> Preset:
+    """The cheapest that is not noticeably off."""
+    limit = f"a FLIP of {JUST_NOTICEABLE:.3f}, just noticeable, in 99.9% of the pixels"
+    below = [one for one in measured if one.error("flip_everywhere") < JUST_NOTICEABLE]
+    if below:
+        return Preset(min(below, key=lambda one: one.worst.ms), f"cheapest below {limit}", True)
+    nearest = min(measured, key=lambda one: (one.error("flip_everywhere"), one.worst.ms))
+    return Preset(nearest, f"nearest to the exact picture; nothing stays below {limit}", False)
+
+
+def as_toml(presets: Mapping[str, Preset], knobs: Sequence[Knob], measured: Mapping[str, Any]) -> str:
+    """The text of a presets file: `measured` says of what machine, when, by which command."""
+    return HEAD + tomli_w.dumps(
+        {"measured": dict(measured), **{name: entry(preset, knobs) for name, preset in presets.items()}}
+    )
+
+
+def entry(preset: Preset, knobs: Sequence[Knob]) -> dict[str, Any]:
+    """A preset's table. A knob whose field is empty (all faces) has none: TOML knows no empty value."""
+    combination, by_name = preset.combination, {knob.name: knob for knob in knobs}
+    levels = {name: by_name[name].level(value).changes for name, value in combination.values.items()}
+    return {
+        "because": preset.because,
+        "ms": round(combination.worst.ms, 1),
+        "ratio": round(combination.worst.ratio, 3),
+        **{name: round(combination.error(name), 5) for name in ("rmse", "max_abs", "flip", "flip_everywhere")},
+        "settings": {
+            name: {path: value for path, value in changes.items() if value is not None}
+            for name, changes in levels.items()
+        },
+    }
