@@ -12,11 +12,11 @@ from PIL import Image
 
 from fakesss.colour import luminance, to_8bit
 
-SIDE = 144
+SIDE = 120
 """Pixels of a thumbnail's longer side, at most; a smaller picture keeps its own size."""
 MARGIN = 0.04
 """Of the object's extent, around it: what lies farther off is background and is cut away."""
-STEPS = 32
+STEPS = 24
 """Colours from zero to the end of a scale: fewer bytes than 256, and no eye tells more apart in a thumbnail."""
 SIGNED, FLIP = "RdBu_r", "magma"
 """Colour maps: blue darker and red brighter than the reference, zero near white; FLIP's own from black to yellow."""
