@@ -17,7 +17,7 @@ TEMPLATES = Environment(
     loader=PackageLoader("fakesss.accuracy"), autoescape=select_autoescape(), undefined=StrictUndefined,
     trim_blocks=True, lstrip_blocks=True,
 )  # fmt: skip
-RAMP = 128, 8  # pixels of a scale of colour
+RAMP = 96, 8  # pixels of a scale of colour
 DATA = (".csv", ".json", ".toml")
 
 
