@@ -17,6 +17,7 @@ from fakesss.camera import View
 from fakesss.lighting_terms import alone
 from fakesss.media import Medium, medium_named, sigma_t_prime
 from fakesss.mesh import Mesh
+from fakesss.offline.denoising import check_denoiser, denoised, denoiser
 from fakesss.offline.physical_scene import physical_scene
 from fakesss.offline.settings import OPAQUE, ROUND, PathTracing
 from fakesss.offline.silhouette import Silhouette, silhouette
@@ -61,6 +62,8 @@ def path_traced(scene: Scene, settings: PathTracing, *, quiet: bool | None = Non
     medium = None if settings.medium == OPAQUE else medium_named(settings.medium, "medium")
     mesh = load_object(scene.object)
     check(scene, mesh, medium)
+    if settings.denoise:
+        check_denoiser()
     extinction = None if medium is None else per_radius(medium, settings.size_mm)
     outline = silhouette(mesh, View.of(scene.camera, scene.size), scene.size, extinction)
     shelf = Shelf(kept_at(scene, mesh, medium, settings), scene.size)
@@ -156,10 +159,12 @@ def finished(
     outline: Silhouette,
     cached: bool,
 ) -> PathTraced:
-    """The tally as a picture: exposed, over the background, with highlights."""
+    """The tally as a picture: exposed, over the background, denoised if asked for, with highlights."""
     rgb = scene.exposure * tally.mean
     if not scene.alpha:
         rgb += np.array(scene.background) * (1 - outline.coverage[..., None] + outline.through)
+    if settings.denoise:
+        rgb = denoised(rgb, outline.coverage)
     if settings.highlights:
         rgb += highlights(scene)
     image = np.concatenate([rgb, outline.coverage[..., None]], axis=2).astype(np.float32)
@@ -189,7 +194,7 @@ def provenance(scene: Scene, mesh: Mesh, medium: Medium | None, settings: PathTr
         "renderer": "path-traced",
         "mitsuba": version("mitsuba"),
         "variant": VARIANT,
-        **settings.model_dump(mode="json", exclude={"noise", "samples"}),
+        **settings.model_dump(mode="json", exclude={"noise", "samples", "denoise"}),
         "sigma_s_prime": medium and list(medium.sigma_s_prime),
         "sigma_a": medium and list(medium.sigma_a),
         "samples": tally.rounds * ROUND,
@@ -197,6 +202,6 @@ def provenance(scene: Scene, mesh: Mesh, medium: Medium | None, settings: PathTr
         "seconds": tally.seconds,
         "scene_sha256": scene.sha256(),
         "mesh_sha256": mesh.sha256,
-        "denoised": False,
+        "denoised": denoiser() if settings.denoise else False,
         "leaves_out": left_out,
     }

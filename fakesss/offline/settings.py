@@ -25,6 +25,7 @@ class PathTracing(Strict):
     )
     seed: Annotated[int, Field(ge=0, lt=1 << 32)] = Field(0, description="of the random numbers")
     highlights: bool = Field(True, description="adds the shader's own specular term")
+    denoise: bool = Field(False, description="true: a neural network smooths the grain, and the picture is marked")
 
     @field_validator("medium")
     @classmethod
