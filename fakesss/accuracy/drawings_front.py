@@ -11,7 +11,7 @@ from fakesss.accuracy.errors import JUST_NOTICEABLE
 from fakesss.accuracy.page_curves import Point
 
 PANEL = 3.6, 2.9  # inches
-METRICS = {"flip": "FLIP, mean", "flip_everywhere": "FLIP that 99.9 % of the pixels do not exceed"}
+METRICS = {"flip": "FLIP, mean", "flip_everywhere": "FLIP in 99.9 % of the pixels"}
 
 
 def front_drawing(points: Sequence[Point], best: Sequence[int]) -> Drawing:

@@ -5,7 +5,7 @@ from typing import Any
 
 import numpy as np
 from matplotlib.axes import Axes
-from matplotlib.ticker import FixedLocator
+from matplotlib.ticker import FixedLocator, FuncFormatter
 
 from fakesss.accuracy.drawings import BLUE, GREEN, INK, VERMILION, Drawing, drawn, panel_row, styled
 from fakesss.accuracy.drawings_axes import Float, just_noticeable, label_points, logarithmic, on_scale
@@ -15,7 +15,7 @@ from fakesss.accuracy.page_curves import Curve, Point
 PANEL = 2.55, 2.5  # inches
 NUMBERS = 6
 """Labels that fit under a panel."""
-METRICS = {"flip": "FLIP, mean", "rmse": "RMSE, linear radiance"}
+METRICS = {"flip": "FLIP", "rmse": "RMSE, linear radiance"}
 TIMES = {"ms": "time of a picture, ms", "s": "baking, s"}
 
 
@@ -96,6 +96,7 @@ def order_panel(axes: Axes, curve: Curve, fitted: float) -> None:
     logarithmic(axes, "x", x, None)
     logarithmic(axes, "y", y, None)
     axes.xaxis.set_major_locator(FixedLocator(list(x[:: -(-len(x) // NUMBERS)])))
+    axes.xaxis.set_major_formatter(FuncFormatter(lambda value, _: f"{value:,.0f}"))
     middle = np.exp(np.log(x).mean()), np.exp(np.log(y).mean())
     axes.plot(x, middle[1] * (x / middle[0]) ** -fitted, color=INK, linewidth=1.1, linestyle=(0, (5, 2)), zorder=2)
     axes.plot(x, y, "o", color=BLUE, markersize=5, zorder=4)

@@ -84,22 +84,22 @@ def numbers_line(curve: Curve, point: Point | None) -> str:
     """Cost and errors in one line; nothing where a level was not timed."""
     if point is None:
         return ""
-    names = ("RMSE", "largest", "FLIP", "in 99.9 %")
-    errors = (f"{name} {text}" for name, text in zip(names, errors_text(point), strict=True) if text)
-    return " · ".join([time_text(curve, point), *errors])
+    rmse, largest, flip, everywhere = errors_text(point)
+    flip = f"FLIP {flip}" + (f" (99.9 %: {everywhere})" if everywhere else "")
+    return " · ".join([time_text(curve, point), flip, f"RMSE {rmse}", f"largest {largest}"])
 
 
 def combinations_table(
     names: Sequence[str], entries: Sequence[Mapping[str, Any]], marks: Sequence[str], points: Sequence[Point]
 ) -> Table:
-    """The front by rising time: what each of the knobs `names` is set to; `marks` name the presets."""
+    """By rising time, with what each of the knobs `names` is set to; `marks` name the presets."""
     rows = [
-        [rounded(point.cost), band_text(point), *errors_text(point), mark,
+        [mark, rounded(point.cost), band_text(point), *errors_text(point),
          *(str(entry["values"].get(name, "")) for name in names)]
         for entry, mark, point in zip(entries, marks, points, strict=True)
     ]  # fmt: skip
     return Table(
-        "table-combinations", "Combinations that nothing beats, by rising time",
-        ["time, ms", "95 % band", *ERRORS, "preset", *names], rows, text_columns=0,
-        note="Errors are against the exact picture, with all that every knob is off by.",
+        "table-combinations", "Combinations that were measured well, by rising time",
+        ["preset", "time, ms", "95 % band", *ERRORS, *names], rows,
+        note="Errors are against the exact picture: all that every knob is off by.",
     )  # fmt: skip

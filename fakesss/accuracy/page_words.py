@@ -39,15 +39,15 @@ def knob_sentences(knob: Mapping[str, Any], curve: Curve) -> list[str]:
         f"The reference is {curve.reference}; recommended is {curve.recommended}, {knob['because']}.",
     ]
     if knob["order"]:
-        said.append(order_sentence(curve.name, knob["order"]))
+        said.append(order_sentence(knob["order"]))
     return said
 
 
-def order_sentence(name: str, order: Mapping[str, Any]) -> str:
+def order_sentence(order: Mapping[str, Any]) -> str:
     """The fitted order beside the expected one, with its interval if there is one."""
     interval = f" (95 % interval {order['low']:.2f} to {order['high']:.2f})" if "low" in order else ""
     return (
-        f"Its RMSE falls as N to the power of −{order['fitted']:.2f}{interval}, N being the number of {name}; "
+        f"Its RMSE falls as N to the power of −{order['fitted']:.2f}{interval}, N being its number; "
         f"−{order['expected']:.2f} is expected."
     )
 

@@ -86,7 +86,7 @@ def test_results_come_first_with_warnings_and_speed(page: str) -> None:
 
 
 def test_the_order_is_said_with_its_interval_and_what_is_expected(page: str) -> None:
-    assert "N to the power of −1.07 (95 % interval 0.90 to 1.20), N being the number of supersampling" in page
+    assert "N to the power of −1.07 (95 % interval 0.90 to 1.20), N being its number" in page
     assert "−1.00 is expected" in page
 
 
