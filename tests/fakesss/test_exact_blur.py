@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from scipy.integrate import quad
 
-from fakesss.accuracy.exact import exact_thickness
+from fakesss.accuracy.exact import Truth, exact_thickness
 from fakesss.accuracy.exact_blur import CELLS, HALF_WIDTH, dense, finer, kernel
 from fakesss.camera import View
 from fakesss.renderer import Renderer
@@ -89,6 +89,15 @@ def test_cells_are_fine_enough_whatever_the_resolution(width: int) -> None:
     assert times % 2 == 1 and len(found.weights) >= 5 * CELLS
     step = view.in_picture(2 * scene.blur.step)[0] * width * times
     assert found.margin == pytest.approx(HALF_WIDTH * step, abs=found.stride)
+
+
+def test_finer_depths_leave_the_samples_where_they_were() -> None:
+    """In a picture so small that steps are far below a sample, what is seen is still seen through its centre."""
+    truth, part = Truth(Scene(object="torus:1000", size=(20, 14)), 1), (slice(2, 12), slice(3, 18))
+    sharp, soft = truth.seen(part, softened=False), truth.seen(part, softened=True)
+    np.testing.assert_array_equal(sharp.hit, soft.hit)
+    np.testing.assert_allclose(sharp.front, soft.front, atol=1e-7)
+    np.testing.assert_allclose(sharp.points, soft.points, atol=1e-7)
 
 
 @pytest.mark.gl
