@@ -1,0 +1,220 @@
+"""Rounds add up, their spread is the noise, and what was interrupted goes on to the same bytes."""
+
+import os
+import signal
+import subprocess
+import sys
+import time
+from pathlib import Path
+from typing import ClassVar
+
+import numpy as np
+import pytest
+from numpy.typing import NDArray
+
+from fakesss.media import MEDIA, Medium
+from fakesss.offline import path_tracing
+from fakesss.offline.path_tracing import PathTraced, PathTracing, path_traced
+from fakesss.offline.settings import ROUND
+from fakesss.offline.tally import Tally
+from fakesss.problem import BadInput
+from fakesss.scene import Scene
+
+CLEAR = Medium("clear", (2.0, 4.0, 8.0), (0.0, 0.0, 0.0), 1.0)
+FURNACE = {"ambient": (1.0, 1.0, 1.0), "diffuse": (0.0, 0.0, 0.0), "specular": (0.0, 0.0, 0.0)}
+WHITE = {"light": FURNACE, "background": (1.0, 1.0, 1.0), "exposure": 1.0}
+SCENE = Scene.from_dict({"object": "sphere:4000", "size": (16, 12), **WHITE}, "test")
+
+
+class FakeTracer:
+    """Radiances by lot instead of by Mitsuba; stops, as Ctrl-C would, at the round of that number."""
+
+    traced: ClassVar[list[int]] = []
+    stop_at: ClassVar[int | None] = None
+
+    def __init__(self, scene: Scene, *rest: object) -> None:
+        self.shape = (scene.size[1], scene.size[0], 3)
+
+    def __call__(self, number: int) -> NDArray[np.float64]:
+        if number == FakeTracer.stop_at:
+            raise KeyboardInterrupt
+        FakeTracer.traced.append(number)
+        return np.random.default_rng(number).random(self.shape)
+
+
+@pytest.fixture(autouse=True)
+def own_cache(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setenv("FAKESSS_CACHE", str(tmp_path / "cache"))
+    monkeypatch.setitem(MEDIA, "clear", CLEAR)  # type: ignore[arg-type]
+
+
+@pytest.fixture
+def fake(monkeypatch: pytest.MonkeyPatch) -> type[FakeTracer]:
+    monkeypatch.setattr(path_tracing, "Tracer", FakeTracer)
+    FakeTracer.traced, FakeTracer.stop_at = [], None
+    return FakeTracer
+
+
+def traced(samples: int, **more) -> PathTraced:
+    settings = {"medium": "clear", "size_mm": 2.0, "highlights": False, **more}
+    return path_traced(SCENE, PathTracing(samples=samples, **settings), quiet=True)
+
+
+def equal(a: PathTraced, b: PathTraced) -> bool:
+    same = a.image.tobytes() == b.image.tobytes() and a.standard_error.tobytes() == b.standard_error.tobytes()
+    return same and (a.samples, a.noise) == (b.samples, b.noise)
+
+
+def test_the_standard_error_is_that_of_the_mean_of_rounds() -> None:
+    rounds = np.random.default_rng(1).random((7, 4, 5, 3))
+    tally, covered = Tally.empty((5, 4)), np.ones((4, 5), bool)
+    for radiance in rounds:
+        tally.add(radiance, covered, 0.5)
+    expected = rounds.std(axis=0, ddof=1) / np.sqrt(7)
+    np.testing.assert_allclose(tally.mean, rounds.mean(axis=0))
+    np.testing.assert_allclose(tally.standard_error, expected)
+    assert tally.noises[-1] == pytest.approx(np.sqrt((expected**2).mean() / (tally.mean**2).mean()))
+    assert tally.noises[0] == np.inf and tally.seconds == 3.5
+
+
+def test_what_is_finished_is_not_traced_again(fake: type[FakeTracer]) -> None:
+    first, second = traced(32), traced(32)
+    assert fake.traced == list(range(32 // ROUND))
+    assert (first.cached, second.cached) == (False, True) and equal(first, second)
+    assert second.seconds == first.seconds == second.provenance["seconds"]
+
+
+def test_more_samples_go_on_from_what_is_there(fake: type[FakeTracer]) -> None:
+    traced(16)
+    more = traced(32)
+    assert fake.traced == list(range(8)) and not more.cached and more.samples == 32
+
+
+def test_exposure_and_background_trace_nothing_again(fake: type[FakeTracer]) -> None:
+    bright = traced(16)
+    scene = SCENE.replace({"exposure": 0.5, "background": (1, 0, 0)})
+    dark = path_traced(scene, PathTracing(medium="clear", size_mm=2.0, samples=16, highlights=False), quiet=True)
+    assert dark.cached
+    np.testing.assert_allclose(dark.standard_error, bright.standard_error / 2, rtol=1e-6)
+
+
+@pytest.mark.parametrize("changed", [{"seed": 1}, {"size_mm": 3.0}, {"medium": "marble"}])
+def test_what_changes_the_radiance_is_traced_anew(fake: type[FakeTracer], changed: dict) -> None:
+    traced(16)
+    assert not traced(16, **changed).cached
+
+
+def test_fewer_samples_than_kept_are_the_bytes_of_fewer(fake: type[FakeTracer], monkeypatch, tmp_path: Path) -> None:
+    traced(64)
+    after = traced(16)
+    monkeypatch.setenv("FAKESSS_CACHE", str(tmp_path / "other"))
+    assert equal(after, traced(16))
+
+
+def test_interrupted_it_keeps_the_last_round_and_ends_the_same(fake: type[FakeTracer], monkeypatch, tmp_path) -> None:
+    fake.stop_at = 5
+    with pytest.raises(KeyboardInterrupt):
+        traced(40)
+    fake.stop_at = None
+    resumed = traced(40)
+    assert fake.traced == list(range(10))  # none twice
+    monkeypatch.setenv("FAKESSS_CACHE", str(tmp_path / "other"))
+    assert equal(resumed, traced(40))
+
+
+def test_a_noise_target_stops_at_the_same_round_however_much_is_kept(
+    fake: type[FakeTracer], monkeypatch: pytest.MonkeyPatch, tmp_path: Path
+) -> None:
+    fresh = traced(256, noise=0.12)
+    assert fresh.noise <= 0.12 and 16 <= fresh.samples < 256
+    monkeypatch.setenv("FAKESSS_CACHE", str(tmp_path / "other"))
+    traced(256)
+    assert equal(traced(256, noise=0.12), fresh)
+
+
+def test_a_damaged_tally_is_made_again(fake: type[FakeTracer], tmp_path: Path) -> None:
+    whole = traced(16)
+    (kept,) = (tmp_path / "cache" / "path-traced").glob("*/*.npz")
+    kept.write_bytes(kept.read_bytes()[:1000])
+    again = traced(16)
+    assert equal(whole, again) and not again.cached
+
+
+def test_without_mitsuba_the_mend_is_named(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setitem(sys.modules, "mitsuba", None)
+    with pytest.raises(BadInput, match=r"pip install 'fakesss\[offline\]'"):
+        traced(16)
+
+
+def test_without_the_denoiser_the_mend_is_named(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr("fakesss.offline.denoising.find_spec", lambda name: None)
+    with pytest.raises(BadInput, match=r"pip install 'fakesss\[denoise\]'"):
+        traced(16, denoise=True)
+
+
+def test_the_denoiser_smooths_the_picture_and_marks_it() -> None:
+    pytest.importorskip("pyoidn")
+    rough, smooth = traced(16), traced(16, denoise=True)
+    inside = rough.image[..., 3] == 1
+    errors = [np.abs(picture.image[inside][:, :3] - 1).mean() for picture in (rough, smooth)]
+    assert errors[1] < 0.5 * errors[0]
+    assert smooth.provenance["denoised"].startswith("Open Image Denoise") and not rough.provenance["denoised"]
+    assert smooth.noise == rough.noise
+
+
+KILLED = """
+from fakesss.offline import path_tracing as p
+from fakesss.scene import Scene
+import sys
+p.KEEP_EVERY = 0.0
+scene = Scene.from_dict({"object": "sphere:4000", "size": [16, 12]}, "test")
+p.path_traced(scene, p.PathTracing(medium="skin1", samples=int(sys.argv[1]), highlights=False), quiet=True)
+"""
+
+
+@pytest.mark.parametrize("how", [signal.SIGKILL, signal.SIGINT])
+def test_a_process_that_was_killed_goes_on_to_the_same_bytes(
+    how: signal.Signals, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    scene = Scene.from_dict({"object": "sphere:4000", "size": (16, 12)}, "test")
+    settings = PathTracing(medium="skin1", samples=160, highlights=False)
+    killed = subprocess.Popen([sys.executable, "-c", KILLED, str(1 << 20)], stderr=subprocess.DEVNULL, env=os.environ)
+    deadline = time.monotonic() + 120
+    while not (list(tmp_path.glob("cache/path-traced/*/latest.npz"))) and time.monotonic() < deadline:
+        time.sleep(0.02)
+    killed.send_signal(how)
+    assert killed.wait(60) != 0
+    (latest,) = tmp_path.glob("cache/path-traced/*/latest.npz")
+    with np.load(latest) as found:
+        rounds = len(found["noises"])
+    samples = ROUND * max(rounds + 3, 8)
+    settings = settings.model_copy(update={"samples": samples})
+    resumed = path_traced(scene, settings, quiet=True)
+    monkeypatch.setenv("FAKESSS_CACHE", str(tmp_path / "other"))
+    assert equal(resumed, path_traced(scene, settings, quiet=True))
+    assert not list(tmp_path.glob("cache/path-traced/*/*.part"))
+
+
+COUNTS = [(8, 64), pytest.param((16, 256), marks=pytest.mark.long)]
+
+
+@pytest.mark.parametrize("counts", COUNTS)
+def test_the_noise_is_what_independent_seeds_differ_by(counts: tuple[int, int]) -> None:
+    seeds, samples = counts
+    pictures = [traced(samples, seed=seed) for seed in range(seeds)]
+    spread = np.var([picture.image[..., :3] for picture in pictures], axis=0, ddof=1)
+    claimed = np.mean([picture.standard_error**2 for picture in pictures], axis=0)
+    assert np.sqrt(spread.sum() / claimed.sum()) == pytest.approx(1, abs=2.5 / np.sqrt(2 * seeds * 60))
+
+
+@pytest.mark.parametrize("most", [128, pytest.param(512, marks=pytest.mark.long)])
+def test_the_error_falls_with_the_square_root_of_the_samples(most: int) -> None:
+    """In the furnace the truth is 1 exactly, so the error needs no reference."""
+    samples = [n for n in (8, 32, 128, 512) if n <= most]
+    errors = []
+    for n in samples:
+        pictures = [traced(n, seed=seed) for seed in range(100, 104)]
+        well_inside = np.s_[3:9, 5:11]
+        errors.append(np.sqrt(np.mean([(picture.image[well_inside][..., :3] - 1) ** 2 for picture in pictures])))
+    order = np.polyfit(np.log(samples), np.log(errors), 1)[0]
+    assert order == pytest.approx(-0.5, abs=0.08)
