@@ -33,7 +33,7 @@ from fakesss.vertex_normals import normalised
 Floats = NDArray[np.float64]
 Floats32 = NDArray[np.float32]
 
-VERSION = 2  # raised whenever the values change, so that cached tiles are made again
+VERSION = 1  # raised whenever the values change, so that cached tiles are made again
 TILE = 48  # pixels a side: with 8 x 8 samples some 300 MB while it is made
 # Settings that say how well something is approximated, not what: no reference depends on them
 APPROXIMATIONS: Any = {
