@@ -47,7 +47,8 @@ def values(annotation: Any, limits: list[Any]) -> st.SearchStrategy[Any]:
     kinds = get_args(annotation)
     if type(None) in kinds:
         inner = kinds[0]
-        return st.none() | values(getattr(inner, "__origin__", inner), [*limits_of(inner), *limits])
+        plain = inner if get_origin(inner) is Literal else getattr(inner, "__origin__", inner)
+        return st.none() | values(plain, [*limits_of(inner), *limits])
     low = max([bound.ge for bound in limits if isinstance(bound, Ge)], default=-1e9)
     low = max([np.nextafter(bound.gt, 1) for bound in limits if isinstance(bound, Gt)], default=low)
     high = min([bound.le for bound in limits if isinstance(bound, Le)], default=1e9)
@@ -71,8 +72,20 @@ def fields(model: type[BaseModel]) -> st.SearchStrategy[dict[str, Any]]:
     return st.fixed_dictionaries({}, optional=found)
 
 
+NEWER = {"kernel", "resolution", "depth"}  # than the published style, which has none of them
+
+
+def consistent(scene: dict[str, Any]) -> dict[str, Any]:
+    """Without what the published style would be refused for."""
+    if scene.get("style") != "as published":
+        return scene
+    tables = {name: scene[name] for name in ("blur", "layers") if name in scene}
+    older = {name: {key: table[key] for key in table if key not in NEWER} for name, table in tables.items()}
+    return {**{key: value for key, value in scene.items() if key != "quality"}, **older}
+
+
 SCENES = st.builds(
-    lambda scene, lights, size: {**scene, "lights": lights, "size": size},
+    lambda scene, lights, size: {**consistent(scene), "lights": lights, "size": size},
     fields(Scene),
     st.lists(fields(Light), max_size=3),
     st.tuples(st.integers(1, 40), st.integers(1, 40)),
