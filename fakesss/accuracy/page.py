@@ -55,7 +55,7 @@ def write_page(document: Mapping[str, Any], folder: Path, pictures: Pictures) ->
         "knobs": parts,
         "unused": document["unused"],
         "exact": exact_shot(pictures),
-        "signed": signed_scale(),
+        "signed": signed_scale("reference"),
         "side": SIDE,
         "method": document["method"],
         "session": session(document),

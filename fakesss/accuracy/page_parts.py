@@ -45,12 +45,12 @@ class Scale:
     note: str
 
 
-def signed_scale() -> Scale:
-    """Of the maps of differences, whose magnification is said with each of them."""
+def signed_scale(reference: str) -> Scale:
+    """Of the maps of differences from `reference`, whose magnification is said with each of them."""
     image = mapped(np.tile(np.linspace(-1, 1, RAMP[0]), (RAMP[1], 1)), SIGNED, -1.0)
     return Scale(
         "Difference", image, "darker", "brighter",
-        "than the reference, in linear luminance; the ends of the scale are −1 and 1 divided by the magnification",
+        f"than the {reference}, in linear luminance; the ends of the scale are −1 and 1 divided by the magnification",
     )  # fmt: skip
 
 

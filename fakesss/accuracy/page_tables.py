@@ -94,12 +94,12 @@ def combinations_table(
 ) -> Table:
     """By rising time, with what each of the knobs `names` is set to; `marks` name the presets."""
     rows = [
-        [mark, rounded(point.cost), band_text(point), *errors_text(point),
+        [rounded(point.cost), band_text(point), *errors_text(point), mark,
          *(str(entry["values"].get(name, "")) for name in names)]
         for entry, mark, point in zip(entries, marks, points, strict=True)
     ]  # fmt: skip
     return Table(
         "table-combinations", "Combinations that were measured well, by rising time",
-        ["preset", "time, ms", "95 % band", *ERRORS, *names], rows,
+        ["time, ms", "95 % band", *ERRORS, "preset", *names], rows,
         note="Errors are against the exact picture: all that every knob is off by.",
     )  # fmt: skip
