@@ -1,5 +1,7 @@
 """The command about the distance to ground truth: fit."""
 
+import shlex
+import sys
 from pathlib import Path
 from typing import Any
 
@@ -44,7 +46,7 @@ def fit(
     Example: fakesss fit figure --to medium.marble --size 128x128 --samples 64 -o marble
     """
     from fakesss.offline.fit_files import check_folder, write_report
-    from fakesss.offline.fit_report import fit_medium
+    from fakesss.offline.fit_report import Named, fit_medium
     from fakesss.offline.settings import PathTracing
     from fakesss.problem import validated
 
@@ -54,7 +56,8 @@ def fit(
     settings = validated(PathTracing, tracing, "fit")
     if out:
         check_folder(out)
-    report = fit_medium(described, settings, starts, seed, Path(scene).name)
+    named = Named(Path(scene).name, shlex.join(["fakesss", *sys.argv[1:]]))
+    report = fit_medium(described, settings, starts, seed, named)
     for note in report.document["notes"]:
         say(note)
     if out:

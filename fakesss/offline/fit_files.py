@@ -1,4 +1,4 @@
-"""What `fakesss fit -o DIR` writes: the fitted scene, the numbers and the pictures."""
+"""What `fakesss fit -o DIR` writes: the fitted scene, the numbers, the pictures, and a page of them."""
 
 import csv
 import io
@@ -26,12 +26,15 @@ def check_folder(folder: Path) -> None:
 
 def write_report(report: Report, folder: Path) -> None:
     """Every file into `folder`. Raises `BadInput` where it cannot be written."""
+    from fakesss.accuracy.page_fit import write_fit_page  # loads matplotlib
+
     write_atomically(folder / SCENE, toml(report.scene, report.document, folder).encode())
     write_atomically(folder / DOCUMENT, (json.dumps(report.document, indent=1) + "\n").encode())
     write_atomically(folder / TABLE, table(report.document["parameters"]).encode())
     for name, picture in report.pictures.items():
         write_image(folder / f"{name}.png", picture)
         write_image(folder / f"{name}.exr", picture)
+    write_fit_page(report.document, folder, report.pictures)
 
 
 def toml(scene: Scene, document: Mapping[str, Any], folder: Path) -> str:

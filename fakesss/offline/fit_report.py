@@ -9,12 +9,13 @@ import numpy as np
 from numpy.typing import NDArray
 
 from fakesss.accuracy.errors import Errors, errors
+from fakesss.accuracy.tradeoff_document import measured_by
 from fakesss.lights import LARGEST
 from fakesss.media import medium_named
 from fakesss.offline.fit import Fit, Target, Try, fit
 from fakesss.offline.fit_leftover import leftover
 from fakesss.offline.fit_matched import matched
-from fakesss.offline.fit_model import matte
+from fakesss.offline.fit_model import basis, matte
 from fakesss.offline.fit_solver import EXPONENTS
 from fakesss.offline.fit_start import starting_scene
 from fakesss.offline.path_tracing import PathTraced, path_traced
@@ -33,6 +34,14 @@ METHOD = (
 
 
 @dataclass(frozen=True)
+class Named:
+    """What the page calls the scene, and the command that makes it again."""
+
+    scene: str
+    command: str
+
+
+@dataclass(frozen=True)
 class Report:
     """What `fakesss fit` tells and writes."""
 
@@ -42,11 +51,12 @@ class Report:
 
 
 def fit_medium(
-    scene: Scene, settings: PathTracing, starts: int, seed: int, label: str, quiet: bool | None = None
+    scene: Scene, settings: PathTracing, starts: int, seed: int, named: Named, quiet: bool | None = None
 ) -> Report:
-    """Fit `scene` to its own path-traced picture; `label` is what the scene is called. `BadInput` for bad input."""
+    """Fit `scene` to its own path-traced picture. `BadInput` for what cannot be drawn, traced or fitted."""
     medium, plain = medium_named(settings.medium, "--to"), settings.model_copy(update={"highlights": False})
     scene = scene.replace({"alpha": False})
+    basis(scene)  # what cannot be fitted is said before hours of path tracing
     traced = path_traced(scene, plain, quiet=quiet)
     began = time.perf_counter()
     target = Target(traced.image, traced.standard_error)
@@ -55,7 +65,7 @@ def fit_medium(
     fitted, start = (shared_renderer().render(matte(each)).image for each in (found.scene, found.start))
     near = errors(fitted, traced.image)
     document = {
-        "scene": label,
+        "scene": named.scene,
         "medium": medium.name,
         "size_mm": settings.size_mm,
         "width": scene.size[0],
@@ -74,6 +84,7 @@ def fit_medium(
         "method": list(METHOD),
         "target": traced.provenance,
         "gl_renderer": shared_renderer().gpu.renderer,
+        **measured_by(named.command),
         "scene_sha256": found.scene.sha256(),
     }
     pictures = {"target": traced.image, "fitted": fitted, "start": start}
