@@ -53,7 +53,7 @@ def profile_drawing(pictures: Mapping[str, NDArray[Any]]) -> Drawing:
         across.legend(frameon=False, fontsize=8)
         caption = (
             f"Linear luminance along row {row + 1} of {covered.shape[0]} and column {column + 1} of "
-            f"{covered.shape[1]}, those that cross most of the object. The target is noisy, as path-traced pictures are."
+            f"{covered.shape[1]}, those that cross most of the object. The target is as noisy as it was traced."
         )
         return drawn(figure, "figure-profiles", caption)
 

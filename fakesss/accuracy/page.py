@@ -15,7 +15,7 @@ from fakesss.accuracy.page_gallery import REFERENCE, Gallery, Pictures, gallery
 from fakesss.accuracy.page_parts import Table, signed_scale, write_files
 from fakesss.accuracy.page_presets import presets_of
 from fakesss.accuracy.page_tables import overview, points_table, published_table
-from fakesss.accuracy.page_words import counted, findings, knob_sentences, lead, session
+from fakesss.accuracy.page_words import counted, findings, knob_sentences, lead, measured_on
 
 
 @dataclass(frozen=True)
@@ -58,7 +58,7 @@ def write_page(document: Mapping[str, Any], folder: Path, pictures: Pictures) ->
         "signed": signed_scale("reference"),
         "side": SIDE,
         "method": document["method"],
-        "session": session(document),
+        "session": {"scene": document["scene"], **measured_on(document)},
         "command": document["command"],
     }
     drawings = [*([front.drawing] if front else []), *(part.drawing for part in parts)]

@@ -92,7 +92,7 @@ def write_fit_page(document: Mapping[str, Any], folder: Path, pictures: Mapping[
         "starts": starts_table(document["starts"]),
         "method": document["method"],
         "session": session(document),
-        "command": document.get("command", ""),
+        "command": document["command"],
     }
     return write_files(folder, "fit.html", list(figures.values()), context)
 

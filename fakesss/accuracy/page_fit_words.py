@@ -8,6 +8,7 @@ import tomli_w
 
 from fakesss.accuracy.page_numbers import duration, rounded
 from fakesss.accuracy.page_parts import Table
+from fakesss.accuracy.page_words import measured_on
 from fakesss.scene import Material
 
 PREFIX = "material."
@@ -134,5 +135,5 @@ def session(document: Mapping[str, Any]) -> dict[str, str]:
         "path tracer": f"Mitsuba {target['mitsuba']}, {target['variant']}, {target['samples']:,} samples a pixel, "
         f"relative noise {rounded(document['noise']['relative'])}, seed {target['seed']}",
         "left out of the target": "; ".join(target["leaves_out"]),
-        "shader drawn by": str(document["gl_renderer"]),
+        **measured_on(document),
     }

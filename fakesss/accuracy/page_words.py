@@ -57,10 +57,10 @@ def and_list(words: Sequence[str]) -> str:
     return " and ".join([", ".join(words[:-1]), words[-1]]) if len(words) > 1 else "".join(words)
 
 
-def session(document: Mapping[str, Any]) -> dict[str, str]:
-    """When, on what, of what."""
+def measured_on(document: Mapping[str, Any]) -> dict[str, str]:
+    """When, and on what machine."""
     machine = {str(name).replace("_", " "): str(value) for name, value in document["machine"].items()}
-    return {"scene": str(document["scene"]), "date": str(document["date"]), **machine}
+    return {"date": str(document["date"]), **machine}
 
 
 def counted(number: int, word: str) -> str:
