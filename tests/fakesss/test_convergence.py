@@ -159,8 +159,8 @@ def test_shadows_edges_follow_the_texels(renderer: Renderer, tmp_path: Path, siz
 def test_fewer_faces_are_farther_from_the_surface(renderer: Renderer, name: str, size: Size) -> None:
     """Thickness with the second layer from `layers.faces` faces: an edge h wide lies h^2 from a round surface, 1/faces.
 
-    So does the outline of a near part, beside which thickness is wrong by any amount: 1/faces in the mean error, and
-    faces^-1/2 in the root mean square.
+    That is the median's order. The outline of a near part moves as far, and beside it thickness is wrong by any amount:
+    a share of 1/faces of the pixels, so that the root mean square falls as faces^-1/2 and the mean in between.
     """
     scene = Scene(object=f"{name}:60000", size=(2 * size.pixels, 2 * size.pixels))
     truth = exact_thickness(scene)
@@ -171,7 +171,8 @@ def test_fewer_faces_are_farther_from_the_surface(renderer: Renderer, name: str,
 
     counts = [1000, 2000, 4000, 8000]
     found = {faces: differences(faces) for faces in counts}
-    holds(f"{name} faces, mean", counts, lambda n: mean(found[n]), 0.65, 1.15)
+    holds(f"{name} faces, median", counts, lambda n: float(np.median(np.abs(found[n]))), 0.75, 1.15)
+    holds(f"{name} faces, mean", counts, lambda n: mean(found[n]), 0.6, 1.15)
     holds(f"{name} faces, rms", counts, lambda n: rms(found[n]), 0.3, 0.8)
 
 
