@@ -22,6 +22,11 @@ def explained(plan: Plan, document: Mapping[str, Any]) -> Iterator[str]:
     yield f"CULLED  {len(culled)}: not drawn, not baked, no memory"
     for verdict in culled:
         yield f"  {verdict.node.name:{width}}{verdict.because}"
+    if quality := document.get("quality"):
+        yield f"QUALITY  {quality['name']}: of the settings it names,"
+        for giver in ("quality", "scene"):
+            given = [f"{path} = {one['value']}" for path, one in quality["settings"].items() if one["from"] == giver]
+            yield f"  from the {giver:{INDENT}}{', '.join(given) or 'none'}"
 
 
 def described(verdict: Verdict, entry: Mapping[str, Any], width: int) -> Iterator[str]:

@@ -9,6 +9,7 @@ from fakesss.colour import decode_srgb
 from fakesss.frame import Made
 from fakesss.frame_graph import Bake, FrameGraph, Plan, Verdict
 from fakesss.pipeline import NONE, build, samples_of
+from fakesss.quality import provenance
 from fakesss.renderer import PICTURE, timed_rendering
 from fakesss.savings import measured
 from fakesss.scene import Scene
@@ -44,6 +45,7 @@ def document(plan: Plan, scene: Scene, timed: bool) -> dict[str, Any]:
             for verdict in plan.verdicts
             if isinstance(verdict.node, Bake)
         ],
+        **({"quality": {"name": scene.quality, "settings": provenance(scene)}} if scene.quality else {}),
     }
 
 

@@ -35,7 +35,7 @@ class Knob:
     reference: Level  # what the levels tend to; one of them or beyond
     error: str  # what is wrong at a lower level, in words
     unused: Reason
-    order: float | None = None  # expected p of an error that falls as value^-p; None where no such law is known
+    order: float | None = None  # least p of an error that falls as value^-p; None where no such law is known
     beside: Value | None = None  # the level at which other knobs are measured; None: the reference
     baked: str = ""  # what it makes: once and kept, costing seconds before the picture and nothing in it
 

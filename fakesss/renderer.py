@@ -17,6 +17,7 @@ from fakesss.memory import peak_bytes, shadow_maps
 from fakesss.passes.mesh import mesh as mesh_of
 from fakesss.pipeline import NONE, build, samples_of
 from fakesss.problem import BadInput
+from fakesss.quality import wanted
 from fakesss.recent import Recent
 from fakesss.scene import Scene
 from fakesss.solidity import is_solid
@@ -168,7 +169,9 @@ def idle_settings(scene: Scene, plan: Plan) -> tuple[str, ...]:
         "layers.resolution": scene.layers.resolution > 1 and "sparse_back_faces" not in kept,
     }
     why = "the picture needs no second layer of a solid"
-    return tuple(f"{setting} does nothing here: {why}." for setting, idle in asked.items() if idle)
+    given = {path: value for knob in wanted(scene).values() for path, value in knob.items()}  # not by the scene itself
+    idle = [path for path, is_idle in asked.items() if is_idle and scene.at(path) != given.get(path)]
+    return tuple(f"{path} does nothing here: {why}." for path in idle)
 
 
 def not_finite(pixels: int) -> str:

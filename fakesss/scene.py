@@ -139,6 +139,9 @@ class Scene(Strict):
     style: Literal["default", "as published"] = Field(
         "default", description="as published: the 2011 program's deterministic flaws (docs/technique.md)"
     )
+    quality: Literal["interactive", "survey", "reference"] | None = Field(
+        None, description="measured settings for every knob that the scene leaves alone (docs/accuracy.md); empty: none"
+    )
     background: Albedo = Field((0.03, 0.03, 0.03), description="linear RGB behind the object, 0..1")
     alpha: bool = Field(
         False, description="true: the background is left out and the file keeps coverage as alpha, to lay over another"
@@ -156,6 +159,16 @@ class Scene(Strict):
     layers: Layers = Layers()
     occlusion: Occlusion = Occlusion()
     blur: Blur = Blur()
+
+    @model_validator(mode="after")
+    def as_good_as_asked(self) -> Self:
+        if self.quality and self.style == "as published":
+            raise ValueError(f'quality "{self.quality}" contradicts style "as published"; leave one of them out')
+        if self.quality:
+            from fakesss.quality import fill  # which most scenes never need
+
+            fill(self)
+        return self
 
     @model_validator(mode="after")
     def published_as_it_was(self) -> Self:
@@ -196,12 +209,12 @@ class Scene(Strict):
         The changes are made in their order: one may name a light that an earlier one added. Pairs may change one
         field again.
         """
-        data = self.model_dump()
+        data = self.model_dump(exclude_unset=True)  # what a quality fills, it fills again
         for path, value in changes.items() if isinstance(changes, Mapping) else changes:
-            *parents, leaf = check_path(path, source, len(data["lights"])).split(".")
+            *parents, leaf = check_path(path, source, len(data.get("lights", ()))).split(".")
             place: Any = data
             for parent in parents:
-                place = place[int(parent) if parent.isdecimal() else parent]
+                place = place[int(parent)] if parent.isdecimal() else place.setdefault(parent, {})
             # later paths reach into the lights, so they must be lights; other fields may depend on later changes
             place[leaf] = self.from_dict({path: value}, source).model_dump()[path] if path == "lights" else value
         return self.from_dict(data, source)

@@ -90,9 +90,17 @@ class Curve:
     reference: Floats32
 
     @property
+    def limit(self) -> float:
+        """FLIP that 99.9% of the pixels shall stay below.
+
+        A third of just noticeable for what is baked: it costs a picture nothing, so it shall leave room to what does.
+        """
+        return JUST_NOTICEABLE / 3 if self.knob.baked else JUST_NOTICEABLE
+
+    @property
     def recommended(self) -> Level:
-        """The cheapest whose difference from the reference stays below just noticeable; the best where none does."""
-        fine = [level for level in self.levels if level.errors.flip_everywhere < JUST_NOTICEABLE]
+        """The cheapest whose difference from the reference stays below the limit; the best where none does."""
+        fine = [level for level in self.levels if level.errors.flip_everywhere < self.limit]
         best = min(self.levels, key=lambda level: (level.errors.flip_everywhere, level.cost))
         return min(fine, key=lambda level: level.cost) if fine else best
 
@@ -109,10 +117,15 @@ class Curve:
             "points": [level.facts() for level in self.levels],
             "pareto": [self.levels[place].value for place in front],
             "recommended": self.recommended.value,
-            "because": f"cheapest below a FLIP of {JUST_NOTICEABLE:.3f} in 99.9% of the pixels"
-            if self.recommended.errors.flip_everywhere < JUST_NOTICEABLE
-            else f"smallest error; none stays below a FLIP of {JUST_NOTICEABLE:.3f} in 99.9% of the pixels",
+            "because": self.because,
         }
+
+    @property
+    def because(self) -> str:
+        """Why that level."""
+        limit = f"a FLIP of {self.limit:.3f} in 99.9% of the pixels"
+        below = self.recommended.errors.flip_everywhere < self.limit
+        return f"cheapest below {limit}" if below else f"smallest error; none stays below {limit}"
 
 
 def measured(rig: Rig, knob: Knob) -> Curve:

@@ -120,7 +120,8 @@ def method(found: Found) -> list[str]:
         "RMSE and the largest error are of linear radiance over covered pixels. FLIP is of the displayed 8-bit picture "
         f"at {PIXELS_PER_DEGREE:.0f} pixels per degree; {JUST_NOTICEABLE:.3f} counts as just noticeable, and "
         '"everywhere" means in 99.9% of the covered pixels.',
-        "What is baked is told in seconds without any cache; in a picture it costs nothing.",
+        "What is baked is told in seconds without any cache; in a picture it costs nothing, so its recommended level "
+        "stays below a third of the just noticeable FLIP, and leaves room to what does cost.",
         f"Combinations: Pareto local search, at most {found.effort.combinations} looked at; what nothing beats was "
         "measured again in turn. Baked knobs stay at their recommended level.",
     ]

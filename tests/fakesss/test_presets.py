@@ -1,0 +1,134 @@
+"""Presets: which combination is which, the file that is shipped, and what `quality` makes of it in a scene."""
+
+from collections.abc import Iterator
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from fakesss import quality
+from fakesss.accuracy.errors import JUST_NOTICEABLE
+from fakesss.accuracy.measuring import Timing
+from fakesss.accuracy.measuring_combinations import Combination
+from fakesss.accuracy.presets import as_toml, chosen
+from fakesss.inspect import explain
+from fakesss.knob import knobs
+from fakesss.problem import BadInput
+from fakesss.scene import Scene, scene_paths
+
+NAMES = ("interactive", "survey", "reference")
+
+
+def combination(ms: float, flip: float, everywhere: float, **values: Any) -> Combination:
+    found = {"rmse": flip / 10, "max_abs": flip, "flip": flip, "flip_everywhere": everywhere}
+    return Combination(values, {}, (Timing(ms / 10, ms / 11, ms / 9, 10.0),), (found,))
+
+
+FAST, GOOD, FINE, BEST = (
+    combination(5, 0.09, 0.5),
+    combination(30, 0.04, 0.2),
+    combination(60, 0.02, JUST_NOTICEABLE - 0.001),
+    combination(200, 0.001, 0.03),
+)
+
+
+def test_the_presets_are_the_best_in_the_budget_the_cheapest_below_noticeable_and_the_best() -> None:
+    found = chosen([FAST, GOOD, FINE, BEST], BEST, 33.0)
+    assert [found[name].combination for name in NAMES] == [GOOD, FINE, BEST]
+    assert all(preset.met for preset in found.values())
+
+
+def test_what_cannot_be_kept_is_said() -> None:
+    found = chosen([GOOD, FAST], GOOD, 1.0)
+    assert (found["interactive"].combination, found["interactive"].met) == (FAST, False)
+    assert (found["survey"].combination, found["survey"].met) == (GOOD, False)
+    assert "nothing keeps within 1 ms" in found["interactive"].because
+    assert "nothing stays below" in found["survey"].because
+
+
+def test_of_several_scenes_the_worst_counts() -> None:
+    easy, hard = combination(10, 0.01, 0.05), combination(90, 0.05, 0.3)
+    both = Combination({}, {}, (*easy.timings, *hard.timings), (*easy.errors, *hard.errors))
+    assert both.worst.ms == pytest.approx(90)
+    assert both.costs[1:] == (0.05, 0.3)
+
+
+@pytest.fixture
+def presets(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> Iterator[None]:
+    """A presets file of what a search may find, instead of the shipped one."""
+    values = {
+        "blur kernel": "3x3",
+        "second-layer faces": 8000,
+        "supersampling": 2,
+        "occlusion rays": 64,
+        "screen-space samples": 32,
+    }
+    low = combination(30, 0.04, 0.2, **values)
+    high = combination(
+        99, 0.0, 0.0, **{**values, "blur kernel": "9x9", "second-layer faces": "all", "supersampling": 8}
+    )
+    text = as_toml(chosen([low], high, 33.0), knobs(), {"command": "fakesss tradeoff figure"})
+    (tmp_path / "presets.toml").write_text(text, encoding="utf-8")
+    monkeypatch.setattr(quality, "PRESETS", tmp_path / "presets.toml")
+    quality.presets.cache_clear()
+    yield
+    quality.presets.cache_clear()
+
+
+@pytest.mark.usefixtures("presets")
+def test_quality_fills_what_the_scene_leaves_alone() -> None:
+    scene = Scene.from_dict({"quality": "survey", "occlusion": {"rays": 77, "bias": 0.01}}, "scene.toml")
+    assert (scene.supersampling, scene.layers.faces, scene.blur.kernel) == (2, 8000, "3x3")
+    assert (scene.occlusion.rays, scene.occlusion.bias, scene.occlusion.samples) == (77, 0.01, 32)
+    assert Scene().layers.faces is None  # a default shared between scenes
+
+
+@pytest.mark.usefixtures("presets")
+def test_a_knob_of_which_the_scene_sets_one_field_is_the_scenes() -> None:
+    scene = Scene.from_dict({"quality": "survey", "blur": {"enabled": False}}, "scene.toml")
+    assert (scene.blur.enabled, scene.blur.kernel) == (False, "5x5")
+
+
+@pytest.mark.usefixtures("presets")
+def test_another_quality_and_none_begin_from_what_the_scene_says() -> None:
+    scene = Scene.from_dict({"quality": "survey", "occlusion": {"rays": 77}}, "scene.toml")
+    best = scene.replace({"quality": "reference"})
+    assert (best.supersampling, best.layers.faces, best.occlusion.rays) == (8, None, 77)
+    assert best.replace({"quality": None}) == Scene().replace({"occlusion.rays": 77})
+    assert scene.replace({"supersampling": 1}).supersampling == 1
+
+
+@pytest.mark.usefixtures("presets")
+def test_a_scene_read_from_a_manifest_keeps_its_settings() -> None:
+    scene = Scene.from_dict({"quality": "survey", "material": {"backlight": 0.5}}, "scene.toml")
+    again = Scene.from_dict(scene.model_dump(mode="json"), "manifest.json")
+    assert again == scene
+    assert again.sha256() == scene.sha256()
+
+
+@pytest.mark.usefixtures("presets")
+def test_explain_tells_who_gave_a_setting() -> None:
+    scene = Scene(object="torus:4000").replace({"quality": "survey", "supersampling": 1})
+    told = explain(scene)["quality"]
+    assert told["name"] == "survey"
+    assert told["settings"]["supersampling"] == {"value": 1, "from": "scene"}
+    assert told["settings"]["layers.faces"] == {"value": 8000, "from": "quality"}
+    assert "quality" not in explain(Scene(object="torus:4000"))
+
+
+def test_quality_contradicts_the_published_style() -> None:
+    with pytest.raises(BadInput, match=r'^scene\.toml: quality "survey" contradicts style "as published"; leave one'):
+        Scene.from_dict({"quality": "survey", "style": "as published"}, "scene.toml")
+
+
+@pytest.mark.parametrize("name", NAMES)
+def test_the_shipped_presets_can_be_drawn_and_say_where_they_are_from(name: str) -> None:
+    shipped = quality.presets()
+    assert shipped["measured"]["command"].startswith("fakesss tradeoff ")
+    assert {"machine", "date", "scenes", "size"} <= shipped["measured"].keys()
+    known = {knob.name: set(knob.paths) for knob in knobs()}
+    for knob, settings in shipped[name]["settings"].items():
+        assert set(settings) <= known[knob] <= set(scene_paths())
+    filled = Scene().replace({"quality": name})
+    for settings in shipped[name]["settings"].values():
+        assert {path: filled.at(path) for path in settings} == settings

@@ -1,0 +1,158 @@
+"""What the trade-off measures: bands, orders, errors, the document's shape; an interrupted run that continues."""
+
+import csv
+import io
+import itertools
+import json
+from pathlib import Path
+from typing import Any
+
+import pytest
+from scipy.stats import binom
+
+from fakesss.accuracy import measuring, measuring_knobs, tradeoff_kept
+from fakesss.accuracy.measuring import in_rounds, median_band, timing
+from fakesss.accuracy.tradeoff import Effort, Found, pictures, tradeoff
+from fakesss.accuracy.tradeoff_document import as_csv, as_text, documents
+from fakesss.knob import knobs
+from fakesss.problem import BadInput
+from fakesss.scene import Scene
+
+SMALL = Scene(object="torus:1000", size=(48, 40)).replace({"light.shadows": True, "occlusion.rays": 16})
+KNOBS = ("supersampling", "shadow filter", "occlusion rays")
+EFFORT = Effort(rounds=3, combinations=5)
+ERRORS = {"rmse", "max_abs", "flip", "flip_everywhere"}
+
+
+@pytest.fixture(scope="module", autouse=True)
+def own_cache(tmp_path_factory: pytest.TempPathFactory) -> Any:
+    """Nothing of the user's, nothing left there."""
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setenv("FAKESSS_CACHE", str(tmp_path_factory.mktemp("cache")))
+        yield
+
+
+@pytest.fixture(scope="module")
+def found(own_cache: None) -> Found:
+    return tradeoff([SMALL], KNOBS, EFFORT, budget_ms=33.0, quiet=True)
+
+
+@pytest.fixture(scope="module")
+def document(found: Found) -> dict[str, Any]:
+    return documents(found, ["torus:1000"], "fakesss tradeoff torus:1000")[0]
+
+
+@pytest.mark.parametrize("rounds", [6, 7, 9, 15, 40])
+def test_the_band_holds_the_median_as_often_as_it_says(rounds: int) -> None:
+    low, high = median_band(range(1, rounds + 1))
+    coverage = binom.cdf(high - 1, rounds, 0.5) - binom.cdf(low - 1, rounds, 0.5)
+    narrower = binom.cdf(high - 2, rounds, 0.5) - binom.cdf(low, rounds, 0.5)
+    assert narrower < 0.95 <= coverage
+
+
+def test_of_few_rounds_the_band_is_all_of_them() -> None:
+    assert median_band([3.0, 1.0, 2.0]) == (1.0, 3.0)
+
+
+def test_a_drifting_machine_does_not_change_ratios(monkeypatch: pytest.MonkeyPatch) -> None:
+    speed = itertools.count(1)  # each round slower than the last
+    clock = {"now": 0.0, "slow": 1.0}
+
+    def spend(milliseconds: float) -> None:
+        clock["now"] += milliseconds * clock["slow"] / 1000
+
+    def baseline() -> None:
+        clock["slow"] = float(next(speed))
+        spend(10)
+
+    monkeypatch.setattr(measuring.time, "perf_counter", lambda: clock["now"])
+    pairs = in_rounds({"twice": lambda: spend(20)}, baseline, 5)
+    found = timing(pairs["twice"], 10.0)
+    assert (found.ratio_low, found.ratio, found.ratio_high) == pytest.approx((2, 2, 2))
+    assert found.ms == pytest.approx(20)
+
+
+def test_the_document_has_the_contracts_shape(document: dict[str, Any]) -> None:
+    document = json.loads(json.dumps(document))
+    assert {"knobs", "presets", "combinations", "unused", "machine", "method", "command"} <= document.keys()
+    assert [knob["name"] for knob in document["knobs"]] == list(KNOBS)
+    for knob in document["knobs"]:
+        assert {"name", "reference", "points", "pareto", "recommended"} <= knob.keys()
+        values = [point["value"] for point in knob["points"]]
+        assert knob["recommended"] in values
+        assert set(knob["pareto"]) <= set(values)
+        for point in knob["points"]:
+            assert {"value", "ms", *ERRORS} <= point.keys()
+            assert point["total"].keys() == ERRORS
+            assert point["ratio_low"] <= point["ratio"] <= point["ratio_high"]
+    assert document["presets"].keys() == {"interactive", "survey", "reference"}
+
+
+def test_a_reference_is_not_off_and_what_is_worse_is(document: dict[str, Any]) -> None:
+    by_name = {knob["name"]: {point["value"]: point for point in knob["points"]} for knob in document["knobs"]}
+    assert by_name["supersampling"][8]["rmse"] == by_name["shadow filter"]["pcf"]["flip"] == 0
+    falling = [by_name["supersampling"][samples]["rmse"] for samples in (1, 2, 4, 8)]
+    assert falling == sorted(falling, reverse=True)
+    assert by_name["shadow filter"]["hard"]["rmse"] > 0
+
+
+def test_bakes_are_told_in_seconds_and_the_rest_is_not(document: dict[str, Any]) -> None:
+    baked = {knob["name"]: ["bake_seconds" in point for point in knob["points"]] for knob in document["knobs"]}
+    assert {name for name, are in baked.items() if all(are)} == {"occlusion rays"}
+    assert not any(baked["supersampling"])
+
+
+def test_combinations_are_one_level_of_each_knob_that_some_nothing_beats(document: dict[str, Any]) -> None:
+    measured = document["combinations"]
+    assert all(entry["values"].keys() == set(KNOBS) for entry in measured)
+    best = [(entry["ms"], entry["flip"]) for entry in measured if entry["front"]]
+    assert best
+    assert all(not (a[0] < b[0] and a[1] < b[1]) for a in best for b in best)
+    assert document["presets"]["reference"]["values"]["occlusion rays"] == 16384
+
+
+def test_pictures_are_those_of_every_level_and_reference(found: Found) -> None:
+    made = pictures(found.places[0])
+    expected = {(knob.name, str(level.value)) for knob in knobs() if knob.name in KNOBS for level in knob.all_levels}
+    assert made.keys() == {*expected, ("", "reference")}
+    assert all(picture.shape == (40, 48, 4) for picture in made.values())
+
+
+def test_the_table_has_one_row_a_level(document: dict[str, Any]) -> None:
+    rows = list(csv.DictReader(io.StringIO(as_csv(document))))
+    assert len(rows) == sum(len(knob["points"]) for knob in document["knobs"])
+    point = document["knobs"][0]["points"][0]
+    assert (float(rows[0]["ms"]), float(rows[0]["total_flip"])) == (point["ms"], point["total"]["flip"])
+    text = as_text(document)
+    assert all(str(word) in text for word in ("SHADOW FILTER", "pcf", "SURVEY"))
+
+
+def test_an_interrupted_run_continues_and_a_finished_one_is_measured_anew(monkeypatch: pytest.MonkeyPatch) -> None:
+    timed: list[Any] = []
+    real = measuring_knobs.in_rounds
+
+    def counted(ways: Any, *others: Any) -> Any:
+        timed.append(list(ways))
+        if len(timed) == 2:
+            raise KeyboardInterrupt
+        return real(ways, *others)
+
+    monkeypatch.setattr(measuring_knobs, "in_rounds", counted)
+    asked = ("shadow filter", "supersampling")
+    with pytest.raises(KeyboardInterrupt):
+        tradeoff([SMALL], asked, EFFORT, quiet=True)
+    tradeoff([SMALL], asked, EFFORT, quiet=True)
+    assert [len(ways) for ways in timed] == [2, 6, 6]  # the filter was measured once
+    tradeoff([SMALL], asked, EFFORT, quiet=True)
+    assert [len(ways) for ways in timed[3:]] == [2, 6]
+    assert not list((Path(tradeoff_kept.cache.folder()) / tradeoff_kept.KIND).glob("*.npz"))
+
+
+def test_an_unknown_knob_names_the_nearest() -> None:
+    with pytest.raises(BadInput, match=r'^--knob "shadow tabs": is no knob; did you mean "shadow taps"'):
+        tradeoff([SMALL], ["shadow tabs"], EFFORT)
+
+
+def test_a_scene_without_use_for_the_knobs_says_why() -> None:
+    with pytest.raises(BadInput, match=r'uses none of the knobs \(shadow taps: shadow\.filter is "pcf"\)'):
+        tradeoff([SMALL], ["shadow taps"], EFFORT)
