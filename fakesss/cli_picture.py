@@ -26,18 +26,48 @@ def drawing(command: Callable[..., None]) -> Callable[..., None]:
     return command
 
 
+def path_tracing(command: Callable[..., None]) -> Callable[..., None]:
+    """The options of a path-traced picture; what is not given is as `PathTracing` has it."""
+    for option in (
+        click.option("--denoise", is_flag=True, help="Path-traced: smooth the grain by a neural network."),
+        click.option("--size-mm", type=float, help="Path-traced: diameter of the bounding sphere, mm. [default: 30]"),
+        click.option("--noise", type=float, help="Path-traced: stop at this RMS error over RMS radiance."),
+        click.option("--samples", type=int, help="Path-traced: per pixel, at most. [default: 256]"),
+        click.option("--path-traced", "medium", metavar="MEDIUM", help="Path-trace a measured medium, or opaque."),
+    ):
+        command = option(command)
+    return command
+
+
 @commands.command()
 @drawing
 @click.option("-o", "--out", default="image.png", show_default=True, help="A .png (8-bit sRGB) or .exr (linear float).")
 @click.option("--views", is_flag=True, help="A contact sheet of the intermediates instead of the picture.")
+@path_tracing
 @AS_JSON
-def render(scene: str, changes: tuple[str, ...], size: str | None, out: str, views: bool, as_json: bool) -> None:
+def render(
+    scene: str,
+    changes: tuple[str, ...],
+    size: str | None,
+    out: str,
+    views: bool,
+    as_json: bool,
+    medium: str | None,
+    **options: Any,
+) -> None:
     """Draw one picture of SCENE: a TOML file, a mesh file, a built-in object, or STUDY#stimulus-id.
 
     With --json it is drawn twice, and each pass's GPU time is of the second drawing.
+    With --path-traced it is a physical medium's, slow and noisy; interrupted, the same command goes on.
 
+    \b
     Example: fakesss render bunny.ply --set material.backlight=0.8 --size 317x211 -o bunny.png
+    Example: fakesss render figure --size 256x256 --path-traced marble --noise 0.05 -o marble.png
     """
+    tracing = {name: value for name, value in options.items() if value is not None and value is not False}
+    if medium is not None or tracing:
+        trace(scene_named(scene, changes, size), medium, tracing, out, views, as_json)
+        return
     from fakesss.renderer import render_file
 
     result = render_file(scene_named(scene, changes, size), out, views, timed=as_json)
@@ -45,6 +75,26 @@ def render(scene: str, changes: tuple[str, ...], size: str | None, out: str, vie
         say(warning)
     done(result, as_json, f"{result['image']}: {result['width']}x{result['height']}, {result['gl_renderer']}")
     sys.exit(1 if result["non_finite"] else 0)
+
+
+def trace(scene: Any, medium: str | None, tracing: Mapping[str, Any], out: str, views: bool, as_json: bool) -> None:
+    """`render` with --path-traced."""
+    from fakesss.offline.picture_file import traced_file
+    from fakesss.offline.settings import PathTracing
+    from fakesss.problem import validated
+
+    if medium is None:
+        given = ", ".join(f"--{name.replace('_', '-')}" for name in tracing)
+        raise BadInput(f"{given}: belongs to path-traced pictures; add --path-traced MEDIUM")
+    if views:
+        raise BadInput("--views: a path-traced picture has no intermediates; leave out one of --views, --path-traced")
+    settings = validated(PathTracing, {"medium": medium, **tracing}, "--path-traced")
+    result = traced_file(scene, settings, out)
+    for warning in result["warnings"]:
+        say(warning)
+    spent = "from the cache" if result["cached"] else f"{result['seconds']:.1f} s in all"
+    size = f"{result['width']}x{result['height']}"
+    done(result, as_json, f"{out}: {size}, {result['samples']} samples, noise {result['noise']:.2%}, {spent}")
 
 
 @commands.command()
@@ -186,4 +236,6 @@ def scene_of_stimulus(name: str) -> Any:
         raise BadInput(f'{folder}: no stimulus "{identity}"; {nearest(identity, entries)}')
     if entries[identity]["scene"] is None:
         raise BadInput(f"{name}: was made elsewhere, there is no scene to draw; name one of the study's own pictures")
+    if entries[identity].get("origin"):
+        say(f"{name}: is path-traced in the study; this is its scene as the shader draws it")
     return Scene.from_dict(entries[identity]["scene"], f"{folder}/stimuli/manifest.json").relative_to(Path(folder))
