@@ -95,7 +95,7 @@ class Curve:
 
         A third of just noticeable for what is baked: it costs a picture nothing, so it shall leave room to what does.
         """
-        return JUST_NOTICEABLE / 3 if self.knob.baked else JUST_NOTICEABLE
+        return float(JUST_NOTICEABLE / 3 if self.knob.baked else JUST_NOTICEABLE)
 
     @property
     def recommended(self) -> Level:
