@@ -1,5 +1,6 @@
 // Box filter over n x n samples in linear light; alpha is the share covered.
 #include "common_colour.glsl"
+#include "common_normal_range.glsl"
 
 #define SAMPLES 1  // n
 #define AS_PUBLISHED 0  // 1: radiance was written to the screen without encoding; image is the light such a screen shows
@@ -20,4 +21,5 @@ void main() {
             sum += taken;
         }
     image = sum / float(SAMPLES * SAMPLES);
+    image.rgb = in_normal_range(image.rgb);
 }

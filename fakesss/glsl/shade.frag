@@ -2,6 +2,7 @@
 #include "common_exact.glsl"
 #include "common_brdf.glsl"
 #include "common_layers.glsl"
+#include "common_normal_range.glsl"
 
 #define LIGHTS 1  // how many shine
 #define CONSTANT_BACKLIGHT 0  // 1: the backlight is the same at any thickness
@@ -79,5 +80,6 @@ void main() {
 #elif CONSTANT_BACKLIGHT
     colour += backlight_colour;
 #endif
-    shaded = vec4(exposure > 0.0 ? exposure * colour : vec3(0.0), 1.0);  // not -0 where the backlight is negative
+    // not -0 where the backlight is negative
+    shaded = vec4(exposure > 0.0 ? in_normal_range(exposure * colour) : vec3(0.0), 1.0);
 }

@@ -8,6 +8,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from layer_programs import filled, random_layer
 
+from fakesss.depth_checks import blur_width
 from fakesss.frame_graph import Plan
 from fakesss.gpu import Gpu, shared
 from fakesss.pipeline import build
@@ -139,6 +140,14 @@ def test_asked_for_or_in_place_it_is_one_thickness(renderer: Renderer, name: str
     scene = Scene(object="knot:4000", size=(64, 64), supersampling=1).replace({"blur.kernel": name})
     both = renderer.data(scene, ("image", "blurred_thickness"))
     np.testing.assert_array_equal(renderer.render(scene).image, both["image"])
+
+
+@pytest.mark.parametrize(("name", "steps"), [("5x5", 4), ("3x3", 3.4322), ("9x9", 4), ("separable", 4)])
+def test_how_far_a_kernel_reaches_is_told(name: str, steps: float) -> None:
+    """From the first tap to the last; `render --views` shows it."""
+    second = np.full((4, 4), 2.0)  # in the plane of the sphere's centre
+    scene = Scene(size=(4, 4)).replace({"blur.kernel": name})
+    assert blur_width(second, scene)[0, 0] == pytest.approx(steps * scene.blur.step, rel=1e-4)
 
 
 @pytest.mark.parametrize(
