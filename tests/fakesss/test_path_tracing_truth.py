@@ -104,6 +104,22 @@ def test_an_opaque_sphere_is_lambert_and_where_the_shader_has_it() -> None:
     np.testing.assert_allclose(traced.image[whole][:, :3], drawn[whole][:, :3], atol=0.06)
 
 
+@pytest.mark.parametrize("size", [(40, 24), (24, 40)])
+def test_the_outline_is_the_shaders(size: tuple[int, int]) -> None:
+    """A white object in a white furnace shows 1 where it is, so that the picture is its own coverage."""
+    view = {"azimuth": 25.0, "elevation": -20.0, "field_of_view": 40.0}
+    white = {"diffuse": (1.0, 1.0, 1.0)}
+    scene = sphere(FURNACE, size=size, object="knot:8000", camera=view, material=white)
+    traced, drawn = picture(scene, "opaque"), render(scene)[..., 3]
+    coverage = traced.image[..., 3]
+    assert (
+        np.abs(coverage - drawn).max() < 0.25 and np.abs(coverage - drawn).mean() < 0.01
+    )  # 4 x 4 against 3 x 3 points
+    assert_within_noise(
+        traced.image[..., 0] - coverage.astype(np.float64), np.maximum(traced.standard_error[..., 0], 0.02)
+    )
+
+
 def H(mu: Floats | float, albedo: float) -> Floats:
     """Chandrasekhar's H function for isotropic scattering, *Radiative Transfer* (1950), chapter V, by iteration."""
     nodes, weights = np.polynomial.legendre.leggauss(64)
