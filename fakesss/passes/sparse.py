@@ -11,7 +11,7 @@ from fakesss.knob import Knob, Level, culled, first_of
 from fakesss.passes.back_faces import faces_of, source
 from fakesss.passes.geometry import draw_mesh
 from fakesss.passes.layer import layer
-from fakesss.sparse_layer import texel_width, placing, sparse_size
+from fakesss.sparse_layer import placing, sparse_size, texel_width
 
 ALL = Level("all", {"layers.resolution": 1})
 KNOBS = (
