@@ -43,7 +43,7 @@ APPROXIMATIONS: Any = {
     "layers": {"method", "rays", "faces", "resolution", "depth"},
     "blur": {"kernel"},
     "occlusion": {"method", "rays", "samples", "radius", "bias"},
-    "shadow": True,
+    "shadow": True,  # but for a penumbra, see `content`
 }
 
 Part = tuple[slice, slice]  # rows and columns of the picture, pixels
@@ -154,6 +154,9 @@ def exact_picture(scene: Scene, samples: int = 8, rays: int = BAKE_RAYS) -> Floa
 def content(truth: Truth) -> dict[str, Any]:
     """What an exact picture depends on, JSON; a setting that only approximates is not among it."""
     settings = truth.scene.model_dump(mode="json", exclude=APPROXIMATIONS)
+    shadow = truth.scene.shadow
+    if truth.setting.casting and shadow.filter == "disc":
+        settings["penumbra"] = shadow.radius
     return {"scene": settings, "mesh": truth.mesh.sha256, "samples": truth.samples, "rays": truth.rays, "tile": TILE}
 
 

@@ -1,8 +1,11 @@
 """What keeps light from a point, by rays: ambient occlusion at vertices and at points, and shadows of lights.
 
 Occlusion at vertices is the bake's own quantity with 16,384 rays, whose error is told in docs/accuracy.md. Shadows
-are hard, since a light has no size; what a shadow map's filter softens is part of its error.
+are hard, since a light has no size, and what a shadow map's filter softens is part of its error; but for the filter
+"disc", which asks for a penumbra: the mean over its disc.
 """
+
+from collections.abc import Iterator
 
 import numpy as np
 from numpy.typing import NDArray
@@ -16,10 +19,13 @@ from fakesss.mesh import Mesh
 from fakesss.occlusion import CLEARANCE, bake_occlusion
 from fakesss.ray_casting import Caster
 from fakesss.scene import Occlusion
+from fakesss.screen_occlusion import GOLDEN_ANGLE, frame_around
+from fakesss.shadow_maps import REACH
 
 Floats = NDArray[np.float64]
 Mask = NDArray[np.bool_]
 
+DISC_RAYS = 16  # to a light through a penumbra's disc, turned otherwise in each of a pixel's samples
 BAKE_RAYS = 16_384  # a vertex, of whatever is baked
 SHADOW_CLEARANCE = 1e-4  # sphere radii, along the normal, from a point to where its rays to the lights start
 
@@ -65,7 +71,7 @@ def onto_smooth_surface(
 
 
 def lit_shares(setting: Setting, caster: Caster, starts: Floats, normals: Floats) -> dict[int, Floats]:
-    """For the number of each light that casts shadows, 1 where it reaches a point (M,), 0 where the object hides it.
+    """For the number of each light that casts shadows, the share of it that the object lets through to a point (M,).
 
     `starts` and unit `normals` (M, 3), world frame: where rays start is `SHADOW_CLEARANCE` further along the normal.
     Numbers are those of `illumination.lighting`: 0 is `light`, i + 1 `lights.i`.
@@ -73,7 +79,31 @@ def lit_shares(setting: Setting, caster: Caster, starts: Floats, normals: Floats
     scene, view = setting.scene, setting.view
     origins = starts + SHADOW_CLEARANCE * normals
     numbered = enumerate((scene.light, *scene.lights))
-    return {number: reaches(light, view, caster, origins) for number, light in numbered if light in setting.casting}
+    if scene.shadow.filter != "disc":
+        return {number: reaches(one, view, caster, origins) for number, one in numbered if one in setting.casting}
+    radius = 2 * scene.shadow.radius
+    return {
+        number: np.mean([reaches(one, view, caster, tap) for tap in disc(one, view, origins, normals, radius)], axis=0)
+        for number, one in numbered
+        if one in setting.casting
+    }
+
+
+def disc(light: Light, view: View, origins: Floats, normals: Floats, radius: float) -> Iterator[Floats]:
+    """Points (M, 3) of a disc around each of `origins` that faces the light: its penumbra is the mean over them.
+
+    As in `glsl/common_shadow.glsl` a point may hide nothing from itself: where the surface's own plane lies nearer to
+    the light than the disc, the plane is taken, up to `shadow_maps.REACH`.
+    """
+    to_light = illumination.arriving(light, view, view.turn(origins))[0] @ view.rotation
+    across = frame_around(to_light)
+    n_dot_l = np.maximum((normals * to_light).sum(axis=1), 1e-6)
+    turn = GOLDEN_ANGLE * DISC_RAYS * np.arange(len(origins))
+    for k in range(DISC_RAYS):  # Vogel 1979, as the filter
+        angle, distance = turn + GOLDEN_ANGLE * k, radius * np.sqrt((k + 0.5) / DISC_RAYS)
+        aside = distance * (np.cos(angle)[:, None] * across[0] + np.sin(angle)[:, None] * across[1])
+        nearer = np.clip(-(aside * normals).sum(axis=1) / n_dot_l, 0, REACH)
+        yield origins + aside + nearer[:, None] * to_light
 
 
 def reaches(light: Light, view: View, caster: Caster, origins: Floats) -> Floats:
