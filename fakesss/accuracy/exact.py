@@ -27,7 +27,6 @@ from fakesss.problem import BadInput
 from fakesss.ray_casting import Caster
 from fakesss.scene import Scene
 from fakesss.shapes import load_object
-from fakesss.solidity import is_solid
 from fakesss.vertex_normals import normalised
 
 Floats = NDArray[np.float64]
@@ -67,7 +66,7 @@ class Truth:
         width, height = self.scene.size
         size = (width * self.samples, height * self.samples)
         view = View.of(self.scene.camera, self.scene.size)
-        return Setting(self.scene, view, size, self.samples, is_solid(self.mesh))
+        return Setting(self.scene, view, size, self.samples, solid=False)  # which only chooses what is drawn
 
     @cached_property
     def sight(self) -> Sight:
