@@ -71,15 +71,16 @@ def distinct(manifest: Mapping[str, Any]) -> set[str]:
 
 @commands.command()
 @STUDY
+@click.option("--offline", is_flag=True, help="Path-trace again too what is neither shipped nor kept: minutes each.")
 @AS_JSON
-def verify(study: Path, as_json: bool) -> None:
+def verify(study: Path, offline: bool, as_json: bool) -> None:
     """Draw every picture of STUDY again in memory and compare its bytes with the manifest.
 
     Example: fakesss verify my-study
     """
     from stimuli.build import verify as compare
 
-    problems = compare(study)
+    problems = compare(study, offline=offline)
     done({"equal": not problems, "problems": problems}, as_json, "\n".join(problems) or "every picture is the same")
     sys.exit(1 if problems else 0)
 

@@ -13,7 +13,7 @@ from fakesss import browser as browsers
 from fakesss.gpu import MEND, shared
 from fakesss.problem import BadInput
 
-OPTIONAL = "report --pdf, the tests"
+OPTIONAL = ("path-traced pictures", "report --pdf, the tests")
 
 
 @dataclass(frozen=True)
@@ -35,13 +35,14 @@ def look() -> list[Finding]:
         finding("Embree", embree, "ambient occlusion", "pip install embreex"),
         finding("database", database, "the survey", "use a Python built with SQLite 3.35 or newer"),
         finding("cache folder", cache_folder, "keeping baked occlusion", "set FAKESSS_CACHE to a writable folder"),
-        finding("browser", browser, OPTIONAL, browsers.MEND),
+        finding("path tracer", path_tracer, OPTIONAL[0], "pip install 'fakesss[offline]'"),
+        finding("browser", browser, OPTIONAL[1], browsers.MEND),
     ]
 
 
 def report(findings: list[Finding]) -> dict[str, Any]:
     """The findings as one JSON document; `ok` means that a study can be built and served."""
-    ok = all(f.found for f in findings if f.needed_for != OPTIONAL)
+    ok = all(f.found for f in findings if f.needed_for not in OPTIONAL)
     return {"ok": ok, "findings": [asdict(f) for f in findings]}
 
 
@@ -100,6 +101,13 @@ def cache_folder() -> str:
     folder().mkdir(parents=True, exist_ok=True)
     with tempfile.TemporaryFile(dir=folder()):
         return str(folder())
+
+
+def path_tracer() -> str:
+    """Mitsuba's version, loaded."""
+    import mitsuba
+
+    return f"Mitsuba {mitsuba.__version__}"
 
 
 def browser() -> str:

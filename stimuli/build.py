@@ -6,7 +6,8 @@ manifest is written last. Encoding and writing go on while the next picture is d
 """
 
 import functools
-from collections.abc import Callable, Iterable
+import logging
+from collections.abc import Callable, Iterable, Mapping
 from concurrent.futures import ProcessPoolExecutor
 from concurrent.futures.process import BrokenProcessPool
 from multiprocessing import get_context
@@ -18,11 +19,15 @@ from tqdm import tqdm
 from fakesss.problem import BadInput
 from stimuli.background import Background
 from stimuli.design import Stimulus, stimuli_of
+from stimuli.drawn import Drawn
 from stimuli.manifest import FORMAT, manifest_path, read_manifest, sha256, stimulus_entry, study_entry, write_manifest
-from stimuli.picture import Drawn, build_key, draw, software
+from stimuli.offline import at_hand, look_ahead
+from stimuli.picture import build_key, draw, software
 from stimuli.sources import check_sources
 from stimuli.store import Store, one_build_at_a_time, up_to_date
 from stimuli.study import Study
+
+log = logging.getLogger(__name__)
 
 Task = tuple[str, Stimulus]  # build key, what to draw
 
@@ -44,6 +49,7 @@ def build(folder: Path, *, jobs: int = 1, force: bool = False, quiet: bool | Non
         if not force:
             store.take_over(up_to_date(folder), set(keys.values()))
         tasks = {keys[s.id]: s for s in reversed(stimuli) if force or not store.has(keys[s.id])}
+        look_ahead((s for s in tasks.values() if s.path_tracing is not None), folder)
         with tqdm(total=len(tasks), desc="pictures", unit="picture", disable=quiet) as bar:
             draw_all(sorted(tasks.items(), key=lambda task: task[1].id), study, folder, jobs, bar.update)
         entries = identified([stimulus_entry(s, store.publish(keys[s.id], f"{s.id}.png")) for s in stimuli])
@@ -75,10 +81,21 @@ def levels_without_effect(manifest: dict[str, Any]) -> list[str]:
 
 
 def draw_all(tasks: list[Task], study: Study, folder: Path, jobs: int, told: Callable[[], object]) -> None:
-    """Every picture of `tasks` into the waiting room, drawn in this process or in `jobs` others; `told` of each."""
-    if jobs <= 1 or len(tasks) <= 1:
-        draw_here(tasks, study.scene.size, folder, told)
+    """Every picture of `tasks` into the waiting room, drawn in this process or in `jobs` others; `told` of each.
+
+    Path-traced ones come last and here: each takes minutes on all cores and has a bar of its own.
+    """
+    traced = [task for task in tasks if task[1].path_tracing is not None]
+    drawn = [task for task in tasks if task[1].path_tracing is None]
+    if jobs <= 1 or len(drawn) <= 1:
+        draw_here(drawn + traced, study.scene.size, folder, told)
         return
+    draw_elsewhere(drawn, study, folder, jobs, told)
+    draw_here(traced, study.scene.size, folder, told)
+
+
+def draw_elsewhere(tasks: list[Task], study: Study, folder: Path, jobs: int, told: Callable[[], object]) -> None:
+    """Every picture of `tasks` into the waiting room, drawn in `jobs` other processes."""
     with ProcessPoolExecutor(jobs, mp_context=get_context("spawn")) as pool:
         try:
             for _ in pool.map(functools.partial(draw_one, size=study.scene.size, folder=folder), tasks):
@@ -108,8 +125,12 @@ def keep(store: Store, key: str, finish: Callable[[], Drawn]) -> None:
     store.put(key, finish())
 
 
-def verify(folder: Path, *, quiet: bool | None = None) -> list[str]:
-    """Rebuilds every picture in memory; one sentence for each whose bytes are not the manifest's (none: all equal)."""
+def verify(folder: Path, *, offline: bool = False, quiet: bool | None = None) -> list[str]:
+    """Rebuilds every picture in memory; one sentence for each whose bytes are not the manifest's (none: all equal).
+
+    Of a path-traced picture whose light is not in the cache only the file is compared, and that is said; `offline`
+    traces it again, for minutes.
+    """
     study = Study.load(folder)
     listed = {entry["id"]: entry for entry in read_manifest(folder)["stimuli"]}
     problems = []
@@ -123,10 +144,18 @@ def verify(folder: Path, *, quiet: bool | None = None) -> list[str]:
         path = manifest_path(folder).parent / entry["file"]
         if not path.is_file() or sha256(path.read_bytes()) != entry["sha256"]:
             problems.append(f"{stimulus.id}: {entry['file']} is not the picture of the manifest; run `fakesss build`")
-        again = draw(stimulus, size=study.scene.size, folder=folder)()
-        if sha256(again.png) != entry["sha256"]:
-            problems.append(f"{stimulus.id}: drawing it again gives other bytes than the manifest's")
-        elif again.cues.values != entry.get("cues", again.cues.values):
-            problems.append(f"{stimulus.id}: its image cues are not the manifest's; run `fakesss build --force`")
+        if offline or stimulus.path_tracing is None or at_hand(stimulus, folder):
+            problems += differences(stimulus, entry, draw(stimulus, size=study.scene.size, folder=folder)())
+        else:
+            log.warning("%s: its file is compared, its light not traced again; --offline does that", stimulus.id)
     problems += [f"{identity}: the manifest has it, the design does not; run `fakesss build`" for identity in listed]
     return problems
+
+
+def differences(stimulus: Stimulus, entry: Mapping[str, Any], again: Drawn) -> list[str]:
+    """What of a picture made again is not as the manifest's entry says."""
+    if sha256(again.png) != entry["sha256"]:
+        return [f"{stimulus.id}: drawing it again gives other bytes than the manifest's"]
+    if again.cues.values != entry.get("cues", again.cues.values):
+        return [f"{stimulus.id}: its image cues are not the manifest's; run `fakesss build --force`"]
+    return []

@@ -6,6 +6,7 @@ from collections.abc import Iterator
 from dataclasses import dataclass, replace
 from typing import Literal
 
+from fakesss.offline.settings import PathTracing
 from fakesss.problem import BadInput
 from fakesss.scene import Scene
 from stimuli.levels import Level, written
@@ -16,13 +17,17 @@ Role = Literal["factor", "compare", "control", "repeat"]
 
 @dataclass(frozen=True)
 class Stimulus:
-    """One picture to show: a scene (or a file made elsewhere) and its place in the design."""
+    """One picture to show: a scene (or a file made elsewhere) and its place in the design.
+
+    `path_tracing`: how the scene is path-traced; None: our renderer draws it.
+    """
 
     id: str
     label: str
     role: Role
     scene: Scene | None = None
     image: str | None = None
+    path_tracing: PathTracing | None = None
     factors: tuple[tuple[str, Level], ...] = ()
     rows: tuple[str, ...] = ()
     same_picture_as: str | None = None
@@ -37,9 +42,12 @@ def stimuli_of(study: Study) -> list[Stimulus]:
     drawn = list(one_at_a_time(study) if study.design.kind == "one-at-a-time" else full_factorial(study))
     if study.design.identical == "show-once":
         drawn = share_identical(drawn)
-    made_elsewhere = [Stimulus("", entry.label or entry.image, "compare", image=entry.image) for entry in study.compare]
+    of_other_origin = [
+        Stimulus("", entry.name, "compare", entry.scene(study.scene), entry.image, entry.path_tracing)
+        for entry in study.compare
+    ]
     controls = [Stimulus("", entry.label, "control", entry.scene(study.scene)) for entry in study.control]
-    entries = [*drawn, *made_elsewhere, *controls]
+    entries = [*drawn, *of_other_origin, *controls]
     numbered = number(entries, width=max(2, len(str(len(entries)))))
     return [*numbered, *repeats(numbered, study)]
 
@@ -86,11 +94,11 @@ def share_identical(drawn: list[Stimulus]) -> list[Stimulus]:
 
 def number(entries: list[Stimulus], width: int) -> list[Stimulus]:
     """Identities img01, img02, ...; a picture whose scene came before names the earlier one."""
-    seen: dict[Scene, str] = {}
+    seen: dict[tuple[Scene, PathTracing | None], str] = {}
     numbered = []
     for index, entry in enumerate(entries, 1):
         identity = f"img{index:0{width}d}"
-        same = None if entry.scene is None else seen.setdefault(entry.scene, identity)
+        same = None if entry.scene is None else seen.setdefault((entry.scene, entry.path_tracing), identity)
         numbered.append(replace(entry, id=identity, same_picture_as=None if same == identity else same))
     return numbered
 

@@ -40,6 +40,7 @@ def stimulus_entry(stimulus: Stimulus, drawn: dict[str, Any]) -> dict[str, Any]:
         "same_picture_as": stimulus.same_picture_as,
         "role": stimulus.role,
         "label": stimulus.label,
+        "origin": drawn["origin"],
         "passes": drawn["passes"],
         "gpu_ms": None,
         "warnings": drawn["warnings"],

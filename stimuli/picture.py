@@ -4,7 +4,6 @@ import hashlib
 import json
 import zlib
 from collections.abc import Callable
-from dataclasses import dataclass
 from functools import cache, partial
 from importlib.metadata import version
 from pathlib import Path
@@ -14,9 +13,11 @@ import fakesss
 from fakesss.problem import BadInput
 from fakesss.recent import Recent
 from fakesss.scene import Material, Scene
-from stimuli.cues import Cues, cues_of_picture, cues_of_rendering, mean_thickness
+from stimuli.cues import cues_of_picture, cues_of_rendering, mean_thickness
 from stimuli.design import Stimulus
+from stimuli.drawn import Drawn
 from stimuli.manifest import sha256
+from stimuli.offline import depends_on, made
 
 if TYPE_CHECKING:
     from fakesss.renderer import Rendering
@@ -40,29 +41,6 @@ NOT_THICKNESS: Any = {**dict.fromkeys(ELSEWHERE, True), "material": SURFACE}  # 
 thicknesses: Recent[float | None] = Recent(4096)
 
 
-@dataclass(frozen=True)
-class Drawn:
-    """A picture's PNG bytes, its image cues, and what is to be said of it."""
-
-    png: bytes
-    width: int
-    height: int
-    passes: tuple[str, ...]
-    warnings: tuple[str, ...]
-    cues: Cues
-
-    def facts(self) -> dict[str, Any]:
-        """The picture's side of its manifest entry."""
-        return {
-            "sha256": sha256(self.png),
-            "width": self.width,
-            "height": self.height,
-            "passes": list(self.passes),
-            "warnings": list(self.warnings),
-            **self.cues.facts(),
-        }
-
-
 def software() -> dict[str, str]:
     """Who draws: the manifest's `software` table. Opens the OpenGL context."""
     from fakesss.gpu import renderer_facts
@@ -75,20 +53,28 @@ def build_key(stimulus: Stimulus, size: tuple[int, int], folder: Path, made_by: 
     """Hash of everything the picture's bytes depend on."""
     from fakesss.shapes import is_mesh_file
 
-    depends: dict[str, Any] = {"software": made_by, "source": source_sha256(), "size": size}
+    if stimulus.path_tracing is not None:
+        depends = depends_on(stimulus, made_by, source_sha256())
+    else:
+        depends = {"software": made_by, "source": source_sha256(), "size": size}
     if stimulus.scene is None:
         depends["image"] = sha256((folder / str(stimulus.image)).read_bytes())
-    else:
+    elif stimulus.path_tracing is None:
         depends["scene"] = stimulus.scene.model_dump(mode="json")
-        if is_mesh_file(stimulus.scene.object):
-            depends["mesh"] = sha256((folder / stimulus.scene.object).read_bytes())
+    if stimulus.scene is not None and is_mesh_file(stimulus.scene.object):
+        depends["mesh"] = sha256((folder / stimulus.scene.object).read_bytes())
     return sha256(json.dumps(depends, sort_keys=True).encode())
 
 
 def draw(stimulus: Stimulus, *, size: tuple[int, int], folder: Path) -> Callable[[], Drawn]:
-    """Draws the stimulus now, at `size` (width, height); what is returned makes the PNG of it later, on any thread."""
+    """Draws the stimulus now, at `size` (width, height); what is returned makes the PNG of it later, on any thread.
+
+    One that is path-traced and not shipped takes minutes.
+    """
     if stimulus.scene is None:
         return partial(read_made_elsewhere, stimulus, size, folder)
+    if stimulus.path_tracing is not None:
+        return made(stimulus, folder)
     return partial(encoded, stimulus.id, *rendered(stimulus.scene.relative_to(folder)))
 
 
@@ -132,7 +118,8 @@ def read_made_elsewhere(stimulus: Stimulus, size: tuple[int, int], folder: Path)
             f"study.toml: compare {stimulus.image!r}: is {width}x{height} but the study's pictures are "
             f"{size[0]}x{size[1]}; resize it or set scene.size"
         )
-    return Drawn(encode_png8(pixels), width, height, (), tuple(warnings), cues_of_picture(pixels))
+    origin = {"image": stimulus.image}
+    return Drawn(encode_png8(pixels), width, height, (), tuple(warnings), cues_of_picture(pixels), origin)
 
 
 @cache

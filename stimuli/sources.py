@@ -23,17 +23,18 @@ def check_sources(study: Study, stimuli: Iterable[Stimulus], folder: Path) -> No
             except BadInput as error:
                 raise BadInput(f"{place}: {error}") from None
     for entry in study.compare:
-        check_file(folder / entry.image, f"study.toml: compare {written(entry.image)}")
+        if entry.image is not None:
+            check_file(folder / entry.image, f"study.toml: compare {written(entry.image)}")
 
 
 def object_place(study: Study, name: str) -> str:
-    """Where the study names the object: a factor's level, a control, or the base scene."""
+    """Where the study names the object: a factor's level, a control, a path-traced picture, or the base scene."""
     for factor in study.factor:
         if factor.path == "object" and name in factor.levels:
             return f'factor "{factor.name}": level {written(name)}'
-    if name != study.scene.object:  # a control's, then: nothing else sets it
-        label = next(control.label for control in study.control if dict(leaves(control.set)).get("object") == name)
-        return f"control {written(label)}: object {written(name)}"
+    for entry in study.beside:
+        if dict(leaves(entry.set)).get("object") == name:
+            return f"{entry.where.removeprefix('study.toml: ')}: object {written(name)}"
     return f"scene.object {written(name)}"
 
 

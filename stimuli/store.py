@@ -11,11 +11,11 @@ import portalocker
 
 from fakesss.output import MEND, make_folder, reason, write_atomically
 from fakesss.problem import BadInput
+from stimuli.drawn import Drawn
 from stimuli.manifest import manifest_path, read_manifest, sha256
-from stimuli.picture import Drawn
 
 LOCK = "lock"
-FACTS = {"sha256", "width", "height", "passes", "warnings", "cues", "cues_missing", "build_key"}  # of one picture
+FACTS = {"sha256", "width", "height", "passes", "warnings", "origin", "cues", "cues_missing", "build_key"}
 UNFINISHED = re.compile(r"\.(img\d+r?\.png|manifest\.json|[0-9a-f]{64}\.(png|json))\.\w{8}")  # see output.replacing
 
 

@@ -14,6 +14,7 @@ from pydantic import Field, model_validator
 from fakesss.problem import BadInput, Strict, validated
 from fakesss.scene import Scene, check_path, read_toml
 from stimuli.changes import ONE_SIZE, check_opaque
+from stimuli.compare import Compare
 from stimuli.control import Control
 from stimuli.levels import MUST_BE, Level, is_level, written
 
@@ -40,13 +41,6 @@ class Design(Strict):
     identical: Literal["show-each", "show-once"] = "show-each"
 
 
-class Compare(Strict):
-    """A picture made elsewhere, rated beside ours: an 8-bit sRGB file of the study's picture size."""
-
-    image: Annotated[str, Field(min_length=1, description="file, relative to study.toml")]
-    label: str = Field("", description="name in tables; empty: the file's name")
-
-
 class Study(Strict):
     """`study.toml`, checked. `Study.load` is the way in; `sha256` is of the file's bytes."""
 
@@ -71,9 +65,14 @@ class Study(Strict):
         check_opaque(study.scene, f"{path.name}: scene.alpha")
         for factor in study.factor:
             check_factor(factor, study.scene, path.name)
-        for control in study.control:
-            control.scene(study.scene)
+        for entry in study.beside:
+            entry.scene(study.scene)
         return study
+
+    @property
+    def beside(self) -> tuple[Compare | Control, ...]:
+        """What is shown beside the design's pictures."""
+        return (*self.compare, *self.control)
 
     @model_validator(mode="after")
     def _names_are_unique(self) -> Self:
@@ -84,7 +83,7 @@ class Study(Strict):
             twice = {name for name in given if given.count(name) > 1}
             if twice:
                 raise ValueError(f'{what} "{sorted(twice)[0]}" is used twice; give each its own')
-        names["compare label"] = [entry.label or entry.image for entry in self.compare]
+        names["compare label"] = [entry.name for entry in self.compare]
         for what, given in names.items():
             formula = next((name for name in given if name.startswith(FORMULA)), None)
             if formula is not None:

@@ -9,7 +9,8 @@ from fakesss.problem import BadInput, nearest
 
 def template_names() -> list[str]:
     """The templates shipped: thesis, minimal, factorial."""
-    return sorted(entry.name.removesuffix(".toml") for entry in (files("stimuli") / "templates").iterdir())
+    entries = (files("stimuli") / "templates").iterdir()
+    return sorted(entry.name.removesuffix(".toml") for entry in entries if entry.name.endswith(".toml"))
 
 
 def write_template(folder: Path, name: str = "thesis") -> Path:

@@ -36,11 +36,14 @@ def study(**changes: Any) -> Study:
 
 def test_the_thesis_template_is_table_4_3(tmp_path: Any) -> None:
     write_template(tmp_path, "thesis")
-    stimuli = stimuli_of(Study.load(tmp_path))
+    every = stimuli_of(Study.load(tmp_path))
+    stimuli, offline = every[:9], every[9:]
     assert [tuple(dict(s.factors).values()) for s in stimuli] == TABLE_4_3
     assert [s.id for s in stimuli] == [f"img0{n}" for n in range(1, 10)]
     assert [s.same_picture_as for s in stimuli] == [None, None, None, "img01", None, None, "img01", None, None]
     assert [s.rows for s in stimuli[::3]] == [("thickness exponent",), ("backlight",), ("diffuse weight",)]
+    assert [s.id for s in offline] == [f"img{n}" for n in range(10, 16)]  # as many as in section 4.2
+    assert len({(s.path_tracing.medium, s.scene.light.azimuth) for s in offline if s.path_tracing and s.scene}) == 6
 
 
 def test_levels_reach_the_scene() -> None:
