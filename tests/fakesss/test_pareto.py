@@ -77,7 +77,7 @@ def test_the_search_finds_the_whole_front_without_trying_everything() -> None:
         looked.append(setting)
         return separable(setting)
 
-    found = pareto_local_search(ALONE, BEST, look, budget=30)
+    found = pareto_local_search(ALONE, BEST, look, budget=10)
     assert set(front(found)) == set(front(EVERYTHING))
     assert len(looked) == len(set(looked)) < len(EVERYTHING)
 
