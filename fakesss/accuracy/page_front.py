@@ -27,13 +27,12 @@ def front_of(document: Mapping[str, Any]) -> Front | None:
         return None
     marks = [preset_at(entry, document["presets"]) for entry in entries]
     points = [point_of(entry, mark) for entry, mark in zip(entries, marks, strict=True)]
-    names = list(dict.fromkeys(name for entry in entries for name in entry["values"]))
     best = [place for place, entry in enumerate(entries) if entry["front"]]
     return Front(
         f"All knobs at once, against the exact picture: the {len(entries)} combinations that were measured well. No "
         "other that was looked at is both faster and nearer to it than those on the line.",
         front_drawing(points, best),
-        combinations_table(names, entries, marks, points),
+        combinations_table(document["presets"]["reference"]["values"], entries, marks, points),
     )
 
 

@@ -90,16 +90,20 @@ def numbers_line(curve: Curve, point: Point | None) -> str:
 
 
 def combinations_table(
-    names: Sequence[str], entries: Sequence[Mapping[str, Any]], marks: Sequence[str], points: Sequence[Point]
+    best: Mapping[str, Any], entries: Sequence[Mapping[str, Any]], marks: Sequence[str], points: Sequence[Point]
 ) -> Table:
-    """By rising time, with what each of the knobs `names` is set to; `marks` name the presets."""
+    """By rising time, with the levels that are not those of `best`, by knob; `marks` name the presets."""
     rows = [
-        [rounded(point.cost), band_text(point), *errors_text(point), mark,
-         *(str(entry["values"].get(name, "")) for name in names)]
+        [rounded(point.cost), band_text(point), *errors_text(point), mark, otherwise(entry["values"], best)]
         for entry, mark, point in zip(entries, marks, points, strict=True)
     ]  # fmt: skip
     return Table(
         "table-combinations", "Combinations that were measured well, by rising time",
-        ["time, ms", "95 % band", *ERRORS, "preset", *names], rows,
+        ["time, ms", "95 % band", *ERRORS, "preset", "other than the preset reference"], rows,
         note="Errors are against the exact picture: all that every knob is off by.",
     )  # fmt: skip
+
+
+def otherwise(values: Mapping[str, Any], best: Mapping[str, Any]) -> str:
+    """The knobs that are not at their best level, with theirs."""
+    return "; ".join(f"{name} {value}" for name, value in values.items() if value != best[name]) or "none"

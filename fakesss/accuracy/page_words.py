@@ -48,7 +48,7 @@ def order_sentence(order: Mapping[str, Any]) -> str:
     interval = f" (95 % interval {order['low']:.2f} to {order['high']:.2f})" if "low" in order else ""
     return (
         f"Its RMSE falls as N to the power of −{order['fitted']:.2f}{interval}, N being its number; "
-        f"−{order['expected']:.2f} is expected."
+        f"−{order['expected']:.2f} or steeper is expected."
     )
 
 

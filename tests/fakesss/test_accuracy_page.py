@@ -87,7 +87,14 @@ def test_results_come_first_with_warnings_and_speed(page: str) -> None:
 
 def test_the_order_is_said_with_its_interval_and_what_is_expected(page: str) -> None:
     assert "N to the power of −1.07 (95 % interval 0.90 to 1.20), N being its number" in page
-    assert "−1.00 is expected" in page
+    assert "−1.00 or steeper is expected" in page
+
+
+def test_combinations_stand_by_time_with_what_they_do_otherwise(page: str) -> None:
+    found = list(rows(page, "table-combinations"))
+    assert [row[0] for row in found] == ["4", "6.5", "10", "16"]
+    assert [row[-2] for row in found] == ["", "interactive", "survey", "reference"]
+    assert [row[-1] for row in found] == ["supersampling 1", "supersampling 2", "supersampling 3", "none"]
 
 
 def test_presets_are_scene_files(page: str) -> None:
