@@ -31,7 +31,7 @@ LOOKS = ("inspect", "views", "contact_sheet", "explanation", "graph_drawing", "g
 PLOTS = ("profile_plot", "relief", "lighting_terms")
 CHECKS = ("browser", "depth_checks", "doctor", "hard_edges", "reference")
 FITTING = ("cli_fit", "fit", "fit_model", "fit_solver", "fit_start", "fit_uncertainty")
-FITTED = ("fit_matched", "fit_leftover", "fit_report", "fit_files")
+FITTED = ("fit_matched", "fit_leftover", "fit_times", "fit_report", "fit_files")
 ROOMS = ("accuracy",)  # folders of nothing but such
 NOT_DRAWING = frozenset((*COMMANDS, *TIMES, *LOOKS, *PLOTS, *CHECKS, *FITTING, *FITTED))
 # What thickness does not depend on; a sweep of any of it measures thickness once.

@@ -2,7 +2,7 @@
 
 Pictures of other random numbers and 8, 16, 32, ... samples a pixel are compared with the target just as the shader's
 picture is, so the noise of the target counts in both. Where the two FLIP agree, samples are interpolated on logarithmic
-axes and seconds in proportion.
+axes; seconds are those of so many samples as measured in turn with the shader's picture (`fit_times`).
 """
 
 from collections.abc import Iterator
@@ -13,6 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from fakesss.accuracy.errors import errors
+from fakesss.offline.fit_times import Times
 from fakesss.offline.path_tracing import path_traced
 from fakesss.offline.settings import ROUND, PathTracing
 from fakesss.scene import Scene
@@ -25,14 +26,13 @@ class Rung:
     """A path-traced picture of few samples."""
 
     samples: int
-    seconds: float
     flip: float
 
 
 def matched(
-    scene: Scene, settings: PathTracing, target: NDArray[Any], flip: float, quiet: bool | None
+    scene: Scene, settings: PathTracing, target: NDArray[Any], flip: float, times: Times, quiet: bool | None
 ) -> dict[str, Any]:
-    """The number of samples at which path tracing is `flip` from `target`, and the seconds they take; JSON.
+    """The number of samples at which path tracing is `flip` from `target`, and what they take; JSON.
 
     `bound`: "" where it was found, "at most" where the fewest samples do already, "at least" where as many as
     the target has do not.
@@ -42,15 +42,22 @@ def matched(
         rungs.append(rung)
         if rung.flip <= flip:
             break
+    samples, bound = where(rungs, flip)
+    curve = [{**asdict(rung), "seconds": rung.samples * times.sample} for rung in rungs]
+    taken = {"seconds": samples * times.sample, "speed_up": samples * times.ratio}
+    return {"samples": samples, "bound": bound, **taken, "curve": curve}
+
+
+def where(rungs: list[Rung], flip: float) -> tuple[float, str]:
+    """Samples at which the last two rungs pass `flip`, and the bound that it is if they do not."""
     last = rungs[-1]
-    if last.flip > flip or len(rungs) == 1:
-        found = {"samples": float(last.samples), "seconds": last.seconds}
-        return {**found, "bound": "at least" if last.flip > flip else "at most", "curve": [asdict(r) for r in rungs]}
+    if last.flip > flip:
+        return float(last.samples), "at least"
+    if len(rungs) == 1:
+        return float(last.samples), "at most"
     before = rungs[-2]
     share = np.log(before.flip / flip) / np.log(before.flip / last.flip)
-    samples = float(before.samples * (last.samples / before.samples) ** share)
-    seconds = last.seconds * samples / last.samples
-    return {"samples": samples, "seconds": seconds, "bound": "", "curve": [asdict(r) for r in rungs]}
+    return float(before.samples * (last.samples / before.samples) ** share), ""
 
 
 def ladder(scene: Scene, settings: PathTracing, target: NDArray[Any], quiet: bool | None) -> Iterator[Rung]:
@@ -59,5 +66,5 @@ def ladder(scene: Scene, settings: PathTracing, target: NDArray[Any], quiet: boo
     while samples <= settings.samples:
         changes = {"seed": (settings.seed + 1) % SEEDS, "samples": samples, "noise": None, "highlights": False}
         traced = path_traced(scene, settings.model_copy(update=changes), quiet=quiet)
-        yield Rung(samples, traced.seconds, errors(traced.image, target).flip)
+        yield Rung(samples, errors(traced.image, target).flip)
         samples *= 2

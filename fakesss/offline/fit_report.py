@@ -1,6 +1,5 @@
 """The shader fitted to a measured medium, and what the fit is worth: errors, times, and what is left over."""
 
-import statistics
 import time
 from dataclasses import dataclass
 from typing import Any
@@ -18,18 +17,20 @@ from fakesss.offline.fit_matched import matched
 from fakesss.offline.fit_model import basis, matte
 from fakesss.offline.fit_solver import EXPONENTS
 from fakesss.offline.fit_start import starting_scene
+from fakesss.offline.fit_times import measured
 from fakesss.offline.path_tracing import PathTraced, path_traced
 from fakesss.offline.settings import PathTracing
 from fakesss.renderer import shared_renderer
 from fakesss.scene import Material, Scene
 
 NUMBERS = ("thickness_exponent", "backlight", "diffuse_weight", "diffuse_contribution", "ambient")
-DRAWN = 15  # warm draws that the shader's time is the median of
 METHOD = (
     "Bounded least squares in linear radiance over the pixels that the shader covers, all weighted alike, without "
     "highlights on either side; separable (variable projection), from several starts and thicknesses.",
     "Kd, ka, wd, wb and Kb are known up to one factor: the largest channel of Kd is held at the medium's reflectance.",
     "FLIP and RMSE are of the pixels that either picture covers, and of a real rendering of the fitted scene.",
+    "Times are measured in turn, path tracing by a few samples that are multiplied up; what the target took when "
+    "made stands in its provenance.",
 )
 
 
@@ -63,7 +64,7 @@ def fit_medium(
     found = fit(starting_scene(scene, medium, settings.size_mm), target, starts, seed, quiet)
     taken = time.perf_counter() - began
     fitted, start = (shared_renderer().render(matte(each)).image for each in (found.scene, found.start))
-    near = errors(fitted, traced.image)
+    near, times = errors(fitted, traced.image), measured(found.scene, medium, settings.size_mm)
     document = {
         "scene": named.scene,
         "medium": medium.name,
@@ -77,9 +78,10 @@ def fit_medium(
         "start_errors": numbers(errors(start, traced.image)),
         "noise": floor(traced, near, seed),
         "model_max_abs": float(np.abs(fitted - found.picture).max()),
-        "seconds": {"shader": drawing_time(matte(found.scene)), "path_traced": traced.seconds, "fit": taken},
+        "seconds": {"shader": times.shader, "path_traced": traced.samples * times.sample, "fit": taken},
+        "speed_up": traced.samples * times.ratio,
         "leftover": leftover(found.scene, fitted, traced.image, traced.standard_error),
-        "matched": matched(scene, plain, traced.image, near.flip, quiet),
+        "matched": matched(scene, plain, traced.image, near.flip, times, quiet),
         "notes": list(found.notes),
         "method": list(METHOD),
         "target": traced.provenance,
@@ -92,16 +94,14 @@ def fit_medium(
 
 
 def concluded(document: dict[str, Any]) -> dict[str, Any]:
-    """With how many times as fast the shader is, and all of it in one sentence."""
+    """With all of it in one sentence."""
     seconds, equal = document["seconds"], document["matched"]
-    speed_up = seconds["path_traced"] / seconds["shader"]
-    equal["speed_up"] = equal["seconds"] / seconds["shader"]
     sentence = (
         f"{duration(seconds['shader'])} against {duration(seconds['path_traced'])} at FLIP {document['flip']:.2f}; for "
         f"that FLIP the path tracer needs {' '.join((equal['bound'], duration(equal['seconds']))).strip()} "
         f"({equal['samples']:.0f} samples a pixel), {equal['speed_up']:,.0f} times as long."
     )
-    return {**document, "speed_up": speed_up, "sentence": sentence}
+    return {**document, "sentence": sentence}
 
 
 def numbers(found: Errors) -> dict[str, float]:
@@ -165,18 +165,6 @@ def tried(one: Try) -> dict[str, Any]:
 def of(material: Material) -> dict[str, Any]:
     """The fitted fields of a material."""
     return {**{name: getattr(material, name) for name in NUMBERS}, "diffuse": list(material.diffuse)}
-
-
-def drawing_time(scene: Scene) -> float:
-    """Seconds of one picture, read back: the median of warm draws."""
-    renderer = shared_renderer()
-    renderer.render(scene)
-    taken = []
-    for _ in range(DRAWN):
-        began = time.perf_counter()
-        renderer.render(scene)
-        taken.append(time.perf_counter() - began)
-    return statistics.median(taken)
 
 
 def duration(seconds: float) -> str:

@@ -20,6 +20,7 @@ from fakesss.offline.fit_matched import matched
 from fakesss.offline.fit_model import matte
 from fakesss.offline.fit_report import Named, Report, duration, fit_medium
 from fakesss.offline.fit_start import light_behind, starting_scene
+from fakesss.offline.fit_times import Times
 from fakesss.offline.settings import PathTracing
 from fakesss.problem import BadInput
 from fakesss.renderer import Renderer, shared_renderer
@@ -93,28 +94,27 @@ def test_shares_of_the_leftover_add_up(report: Report) -> None:
 def test_equal_samples_are_found_between_two_rungs(report: Report) -> None:
     told = report.document["matched"]
     seconds = report.document["seconds"]
-    assert told["speed_up"] == pytest.approx(told["seconds"] / seconds["shader"])
-    assert report.document["speed_up"] == pytest.approx(seconds["path_traced"] / seconds["shader"])
+    assert told["seconds"] == pytest.approx(told["samples"] / SETTINGS.samples * seconds["path_traced"])
+    assert told["speed_up"] == pytest.approx(told["samples"] / SETTINGS.samples * report.document["speed_up"])
+    assert seconds["shader"] > 0 and report.document["speed_up"] > 0
     flips = [rung["flip"] for rung in told["curve"]]
     assert told["bound"] in ("", "at most", "at least") and flips == sorted(flips, reverse=True)
 
 
 @pytest.mark.parametrize(
-    ("flip", "samples", "seconds", "bound"),
-    [(0.2, 16 * 2**0.5, 2**0.5 * 2, ""), (0.5, 8, 1, "at most"), (0.01, 64, 8, "at least"), (0.4 / 2**0.75, 16, 2, "")],
+    ("flip", "samples", "bound"),
+    [(0.2, 8 * 2**1.5, ""), (0.5, 8, "at most"), (0.01, 64, "at least"), (0.4 / 2 ** (2 / 3), 16, "")],
 )
-def test_samples_of_equal_flip(
-    monkeypatch: pytest.MonkeyPatch, flip: float, samples: float, seconds: float, bound: str
-) -> None:
-    """FLIP 0.4 at 8 samples, falling as n^-2/3 or n^-3/4, a second for eight."""
-    power = 0.75 if flip == 0.4 / 2**0.75 else 2 / 3
+def test_samples_of_equal_flip(monkeypatch: pytest.MonkeyPatch, flip: float, samples: float, bound: str) -> None:
+    """FLIP 0.4 at 8 samples, falling as n^-2/3; a second for eight of them, and 0.01 s for the shader."""
 
     def ladder(*_: object) -> Any:
-        return iter(fit_matched.Rung(n, n / 8, 0.4 * (n / 8) ** -power) for n in (8, 16, 32, 64))
+        return iter(fit_matched.Rung(n, 0.4 * (n / 8) ** (-2 / 3)) for n in (8, 16, 32, 64))
 
     monkeypatch.setattr(fit_matched, "ladder", ladder)
-    told = matched(SCENE, SETTINGS, np.zeros((1, 1, 4)), flip, True)
-    assert (told["samples"], told["seconds"]) == pytest.approx((samples, seconds)) and told["bound"] == bound
+    told = matched(SCENE, SETTINGS, np.zeros((1, 1, 4)), flip, Times(0.01, 1 / 8, 12.5), True)
+    assert (told["samples"], told["bound"]) == (pytest.approx(samples), bound)
+    assert (told["seconds"], told["speed_up"]) == pytest.approx((samples / 8, 12.5 * samples))
 
 
 def test_bins_know_where_the_error_was_planted(renderer: Renderer) -> None:
