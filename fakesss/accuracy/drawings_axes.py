@@ -1,7 +1,6 @@
 """Logarithmic axes in plain numbers, zeros at their edge, and labels of points that do not lie on one another."""
 
 from collections.abc import Sequence
-from typing import Any
 
 import numpy as np
 from matplotlib.axes import Axes
@@ -27,6 +26,8 @@ NO_NUMBER = 1e-6
 """Where zero stands if there is nothing else."""
 SIZE = 7.5  # points, of a label
 LETTER, LINE = 0.62, 1.3  # of a label's width and height, in sizes of its font
+STRAY = 20.0
+"""Square points of overlap that a label rather has than a place where it seems to be another point's."""
 AROUND = ((5, 4), (-5, 4), (5, -4), (-5, -4), (0, 7), (0, -7), (8, 0), (-8, 0), (9, 12), (-9, 12), (9, -12), (-9, -12))
 """Where a label may stand, in points from its point."""
 
@@ -51,26 +52,16 @@ def logarithmic(axes: Axes, which: str, places: Float, zero: float | None) -> No
     axes.set(**{f"{which}scale": "log", f"{which}lim": (low, high)})
     steps = LogLocator(subs=(1.0,) if high / low > 10**DECADES else (1.0, 2.0, 5.0)).tick_values(low, high)
     # a number at or below zero's own place would be read as that number
-    axis.set_major_locator(FixedLocator([step for step in steps if zero is None or step > 2 * zero]))
-    axis.set_major_formatter(FuncFormatter(lambda value, _: rounded(value)))
+    ticks = list(steps) if zero is None else [zero, *(step for step in steps if step > 2 * zero)]
+    axis.set_major_locator(FixedLocator(ticks))
+    axis.set_major_formatter(FuncFormatter(lambda value, _: "0" if value == zero else rounded(value)))
     axis.set_minor_locator(NullLocator())
     axis.grid(color=GRID, linewidth=0.8, zorder=0)
     axes.set_axisbelow(True)
     axes.tick_params(which="both", length=0)
     if zero is not None:
-        mark_zero(axes, which, zero)
-
-
-def mark_zero(axes: Axes, which: str, zero: float) -> None:
-    """The dotted line of zero, and its label beside the axis."""
-    line = axes.axvline if which == "x" else axes.axhline
-    line(zero, color=FAINT, linewidth=0.9, linestyle=(0, (1, 2)), zorder=1)
-    across: dict[str, Any] = {"transform": axes.get_xaxis_transform(), "ha": "center", "va": "top"}
-    upwards: dict[str, Any] = {"transform": axes.get_yaxis_transform(), "ha": "right", "va": "center"}
-    if which == "x":
-        axes.text(zero, -0.025, "0", **across)
-    else:
-        axes.text(-0.015, zero, "0", **upwards)
+        line = axes.axvline if which == "x" else axes.axhline
+        line(zero, color=FAINT, linewidth=0.9, linestyle=(0, (1, 2)), zorder=1)
 
 
 def just_noticeable(axes: Axes) -> None:
@@ -98,7 +89,9 @@ def label_points(axes: Axes, x: Float, y: Float, texts: Sequence[str], bold: Seq
         own = points[number]
         choices = [(dx, dy, box_of(own, dx, dy, text)) for dx, dy in AROUND]
         others = [box for place, box in enumerate(taken) if place != number]
-        dx, dy, box = min(choices, key=lambda choice: hidden(choice[2], others, frame))
+        far = np.delete(points, number, axis=0)
+        costs = [hidden(box, others, frame) + STRAY * strays(box, own, far) for _, _, box in choices]
+        dx, dy, box = choices[int(np.argmin(costs))]
         taken.append(box)
         axes.annotate(
             text, (x[number], y[number]), xytext=(dx, dy), textcoords="offset points", fontsize=SIZE, color=INK,
@@ -120,6 +113,12 @@ def hidden(box: Box, others: Sequence[Box], frame: Box) -> float:
     """Square points of `others` that lie under `box`, and what of it lies outside the axes."""
     outside = (box[2] - box[0]) * (box[3] - box[1]) - overlap(box, frame)
     return outside + sum(overlap(box, other) for other in others)
+
+
+def strays(box: Box, own: Float, far: Float) -> bool:
+    """Whether a label's middle is nearer to one of the points `far` (N, 2) than to its own."""
+    middle = np.array([box[0] + box[2], box[1] + box[3]]) / 2
+    return bool((np.linalg.norm(far - middle, axis=1) < np.linalg.norm(own - middle)).any())
 
 
 def overlap(a: Box, b: Box) -> float:
