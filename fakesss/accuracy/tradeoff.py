@@ -12,6 +12,7 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from typing import Any
 
+import numpy as np
 from tqdm import tqdm
 
 from fakesss.accuracy.errors import errors
@@ -34,6 +35,7 @@ class Effort:
     combinations: int
 
 
+BLANK = np.ones((8, 8, 4), np.float32)
 THOROUGH = Effort(rounds=9, combinations=60)
 QUICK = Effort(rounds=3, combinations=16)
 
@@ -68,8 +70,8 @@ def tradeoff(
     asked = named(names)
     used = [tuple(knob for knob in asked if not knob.unused(scene)) for scene in scenes]
     check(scenes, asked, used)
+    errors(BLANK, BLANK)  # says at once, not after minutes, if FLIP is not installed
     truths = [exact_picture(scene) for scene in scenes]
-    errors(truths[0], truths[0])  # says at once if FLIP is not installed or nothing is seen
     kept = Kept({**renderer_facts(), "knobs": names, "effort": [effort.rounds, effort.combinations]})
     with tqdm(total=steps(used, effort), desc="tradeoff", unit="picture", disable=True if quiet else None) as bar:
         places = []

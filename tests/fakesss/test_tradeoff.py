@@ -4,16 +4,20 @@ import csv
 import io
 import itertools
 import json
+import tomllib
 from pathlib import Path
 from typing import Any
 
 import pytest
+from click.testing import CliRunner
 from scipy.stats import binom
 
+import fakesss.cli_measure  # noqa: F401  (adds its commands)
 from fakesss.accuracy import measuring, measuring_knobs, tradeoff_kept
 from fakesss.accuracy.measuring import in_rounds, median_band, timing
 from fakesss.accuracy.tradeoff import Effort, Found, pictures, tradeoff
 from fakesss.accuracy.tradeoff_document import as_csv, as_text, documents
+from fakesss.cli import commands
 from fakesss.knob import knobs
 from fakesss.problem import BadInput
 from fakesss.scene import Scene
@@ -156,3 +160,24 @@ def test_an_unknown_knob_names_the_nearest() -> None:
 def test_a_scene_without_use_for_the_knobs_says_why() -> None:
     with pytest.raises(BadInput, match=r'uses none of the knobs \(shadow taps: shadow\.filter is "pcf"\)'):
         tradeoff([SMALL], ["shadow taps"], EFFORT)
+
+
+def test_the_command_writes_page_data_and_presets(tmp_path: Path) -> None:
+    first, second = tmp_path / "first.toml", tmp_path / "second.toml"
+    lines = 'object = "torus:1000"\nsize = [48, 40]\nlight.shadows = true\nocclusion.enabled = false\n'
+    first.write_text(lines, encoding="utf-8")
+    second.write_text(lines + "light.azimuth = 10.0\n", encoding="utf-8")
+    out, presets = tmp_path / "out", tmp_path / "presets.toml"
+    arguments = ["tradeoff", str(first), str(second), "--knob", "shadow filter", "--quick", "--json"]
+    ran = CliRunner().invoke(commands, [*arguments, "-o", str(out), "--presets-out", str(presets)])
+    assert ran.exit_code == 0, ran.output
+    told = json.loads(ran.stdout)["scenes"]
+    for number, document in enumerate(told, 1):
+        folder = out / f"{number}-{'first' if number == 1 else 'second'}"
+        assert json.loads((folder / "tradeoff.json").read_text(encoding="utf-8")) == document
+        assert {"index.html", "tradeoff.csv"} <= {path.name for path in folder.iterdir()}
+    written = tomllib.loads(presets.read_text(encoding="utf-8"))
+    assert written["measured"]["scenes"] == [str(first), str(second)]
+    worst = max(document["presets"]["reference"]["flip"] for document in told)
+    assert written["reference"]["flip"] == pytest.approx(worst, abs=1e-5)
+    assert written["reference"]["settings"]["shadow filter"] == {"shadow.filter": "pcf"}
