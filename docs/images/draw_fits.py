@@ -55,5 +55,6 @@ if __name__ == "__main__":
             for light, report in reports.items():
                 print(rows(medium, light, report.document)[number])
     sheet = np.concatenate([np.concatenate([pair(each) for each in lit.values()], axis=1) for lit in found.values()])
-    picture = Image.fromarray(sheet).quantize(128, dither=Image.Dither.NONE)
+    picture = Image.fromarray(sheet).quantize(256, method=Image.Quantize.MEDIANCUT)
+    picture = Image.fromarray(sheet).quantize(256, palette=picture, dither=Image.Dither.FLOYDSTEINBERG)  # no bands
     picture.save(HERE / "fits.png", optimize=True)

@@ -59,6 +59,7 @@ def fit_medium(
     scene = scene.replace({"alpha": False})
     basis(scene)  # what cannot be fitted is said before hours of path tracing
     traced = path_traced(scene, plain, quiet=quiet)
+    as_many = plain.model_copy(update={"samples": traced.samples})  # --noise may have stopped it before
     began = time.perf_counter()
     target = Target(traced.image, traced.standard_error)
     found = fit(starting_scene(scene, medium, settings.size_mm), target, starts, seed, quiet)
@@ -81,7 +82,7 @@ def fit_medium(
         "seconds": {"shader": times.shader, "path_traced": traced.samples * times.sample, "fit": taken},
         "speed_up": traced.samples * times.ratio,
         "leftover": leftover(found.scene, fitted, traced.image, traced.standard_error),
-        "matched": matched(scene, plain, traced.image, near.flip, times, quiet),
+        "matched": matched(scene, as_many, traced.image, near.flip, times, quiet),
         "notes": list(found.notes),
         "method": list(METHOD),
         "target": traced.provenance,
