@@ -58,6 +58,7 @@ class Truth:
 
     @cached_property
     def mesh(self) -> Mesh:
+        """The object, in the world frame."""
         return load_object(self.scene.object)
 
     @cached_property
@@ -70,10 +71,12 @@ class Truth:
 
     @cached_property
     def sight(self) -> Sight:
+        """The camera's rays."""
         return Sight(self.scene, self.mesh, self.setting.view, self.rays)
 
     @cached_property
     def caster(self) -> Caster:
+        """Rays to the lights."""
         return Caster(self.mesh)
 
     @cached_property
