@@ -25,9 +25,10 @@ def study(tmp_path_factory: pytest.TempPathFactory) -> Path:
     fakesss("new", folder, "--template", "thesis")
     text = (folder / "study.toml").read_text(encoding="utf-8")
     small = text.replace('object = "figure"', 'object = "figure:4000"').replace("[512, 512]", "[96, 96]")
+    small = small.replace("samples = 1024", "samples = 8").replace("denoise = true", "denoise = false")
     (folder / "study.toml").write_text(small, encoding="utf-8")
     manifest = fakesss("build", folder)
-    assert len(manifest["stimuli"]) == 9
+    assert [entry["role"] for entry in manifest["stimuli"]] == 9 * ["factor"] + 6 * ["compare"]
     return folder
 
 
@@ -45,7 +46,7 @@ def results(study: Path, simulated: dict[str, Any]) -> dict[str, Any]:
 def test_no_answer_is_lost_or_doubled(simulated: dict[str, Any]) -> None:
     assert (simulated["started"], simulated["completed"]) == (44, 38)
     assert (simulated["lost"], simulated["duplicated"]) == (0, 0)
-    assert simulated["stored"] == simulated["acknowledged"] >= 38 * 9 * 3
+    assert simulated["stored"] == simulated["acknowledged"] >= 38 * 15 * 3
 
 
 def test_the_report_counts_what_the_server_counted(results: dict[str, Any]) -> None:
@@ -72,6 +73,18 @@ def test_the_planted_effects_have_their_direction(results: dict[str, Any]) -> No
     assert diffuse[0] < diffuse[0.5]
     realistic = means(results, "realistic", "thickness exponent")
     assert realistic[18] > realistic[30]
+
+
+def test_the_report_has_the_thesis_s_last_row(results: dict[str, Any]) -> None:
+    """Table 4.4: our best picture beside the offline ones, in which nothing was planted."""
+    (row,) = (
+        row
+        for row in results["anova"]
+        if row["factor"] == "offline images vs ours" and row["method"].startswith("repeated")
+    )
+    assert (row["question"], row["df1"]) == ("translucent", 6)
+    pairs = {(row["a"], row["b"]) for row in results["tukey"] if row["factor"] == "offline images vs ours"}
+    assert len(pairs) == 21 and {f"img{n}" for n in range(10, 16)} <= {name for pair in pairs for name in pair}
 
 
 def means(results: dict[str, Any], question: str, factor: str) -> dict[float, float]:
