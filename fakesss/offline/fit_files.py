@@ -28,7 +28,7 @@ def write_report(report: Report, folder: Path) -> None:
     """Every file into `folder`. Raises `BadInput` where it cannot be written."""
     from fakesss.accuracy.page_fit import write_fit_page  # loads matplotlib
 
-    write_atomically(folder / SCENE, toml(report.scene, report.document, folder).encode())
+    write_atomically(folder / SCENE, toml(report.scene, report.document).encode())
     write_atomically(folder / DOCUMENT, (json.dumps(report.document, indent=1) + "\n").encode())
     write_atomically(folder / TABLE, table(report.document["parameters"]).encode())
     for name, picture in report.pictures.items():
@@ -37,7 +37,7 @@ def write_report(report: Report, folder: Path) -> None:
     write_fit_page(report.document, folder, report.pictures)
 
 
-def toml(scene: Scene, document: Mapping[str, Any], folder: Path) -> str:
+def toml(scene: Scene, document: Mapping[str, Any]) -> str:
     """The scene as `fakesss render` reads it, with where it comes from; a mesh file's path is made absolute."""
     from fakesss.shapes import is_mesh_file
 

@@ -7,6 +7,7 @@ axes; seconds are those of so many samples as measured in turn with the shader's
 
 from collections.abc import Iterator
 from dataclasses import asdict, dataclass
+from itertools import count, takewhile
 from typing import Any
 
 import numpy as np
@@ -62,9 +63,8 @@ def where(rungs: list[Rung], flip: float) -> tuple[float, str]:
 
 def ladder(scene: Scene, settings: PathTracing, target: NDArray[Any], quiet: bool | None) -> Iterator[Rung]:
     """Ever more samples, up to the target's; each rung goes on from the one before."""
-    samples = 2 * ROUND
-    while samples <= settings.samples:
+    doubled = (2 * ROUND << number for number in count())
+    for samples in (*takewhile(lambda samples: samples < settings.samples, doubled), settings.samples):
         changes = {"seed": (settings.seed + 1) % SEEDS, "samples": samples, "noise": None, "highlights": False}
         traced = path_traced(scene, settings.model_copy(update=changes), quiet=quiet)
         yield Rung(samples, errors(traced.image, target).flip)
-        samples *= 2

@@ -15,6 +15,7 @@ import fakesss.cli_fit  # noqa: F401  (adds the command)
 from fakesss.cli import commands
 from fakesss.media import MEDIA
 from fakesss.offline import fit_matched
+from fakesss.offline.fit_files import toml
 from fakesss.offline.fit_leftover import THICKNESSES, bins, leftover
 from fakesss.offline.fit_matched import matched
 from fakesss.offline.fit_model import matte
@@ -117,6 +118,15 @@ def test_samples_of_equal_flip(monkeypatch: pytest.MonkeyPatch, flip: float, sam
     assert (told["seconds"], told["speed_up"]) == pytest.approx((samples / 8, 12.5 * samples))
 
 
+def test_the_ladder_ends_at_the_targets_samples(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setenv("FAKESSS_CACHE", str(tmp_path))
+    scene = Scene(object="torus:4000", size=(8, 8))
+    target = shared_renderer().render(matte(scene)).image
+    for samples, rungs in ((8, [8]), (16, [8, 16]), (20, [8, 16, 20])):
+        settings = SETTINGS.model_copy(update={"samples": samples})
+        assert [rung.samples for rung in fit_matched.ladder(scene, settings, target, True)] == rungs
+
+
 def test_bins_know_where_the_error_was_planted(renderer: Renderer) -> None:
     """A picture made too dark where the object is thin: all of the leftover is there, and negative."""
     picture = renderer.render(matte(SCENE)).image
@@ -183,6 +193,14 @@ def test_the_command_writes_scene_numbers_and_pictures(tmp_path: Path) -> None:
     assert again.sha256() == document["scene_sha256"]
     rows = (tmp_path / "fit" / "parameters.csv").read_text().splitlines()
     assert rows[0].startswith("parameter,start,fitted") and len(rows) == 1 + len(PARAMETERS) + 2
+
+
+def test_a_fitted_mesh_file_is_found_from_any_folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.chdir(tmp_path)
+    about = {"scene": "part.ply", "medium": "marble", "size_mm": 30.0, "sentence": "As near as that."}
+    (tmp_path / "elsewhere").mkdir()
+    (tmp_path / "elsewhere" / "fitted.toml").write_text(toml(Scene(object="part.ply"), about))
+    assert Scene.load(tmp_path / "elsewhere" / "fitted.toml").object == str(tmp_path / "part.ply")
 
 
 @pytest.mark.parametrize(
