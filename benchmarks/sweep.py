@@ -89,7 +89,10 @@ def draw_alone(folder: Path) -> None:
 
 @contextlib.contextmanager
 def study_of(pictures: int, size: int, object_name: str) -> Iterator[Path]:
-    """The thesis's study in a temporary folder, with `pictures` thickness exponents instead of its three factors."""
+    """The thesis's study in a temporary folder, with `pictures` thickness exponents instead of its three factors.
+
+    Without its path-traced pictures: they are of one size, and nothing is drawn for them.
+    """
     with tempfile.TemporaryDirectory(prefix="fakesss-sweep-") as name:
         folder = Path(name)
         text = write_template(folder, "thesis").read_text(encoding="utf-8")
@@ -97,6 +100,7 @@ def study_of(pictures: int, size: int, object_name: str) -> Iterator[Path]:
         text = text.replace('object = "figure"', f'object = "{object_name}"')
         levels = ", ".join(f"{5 + 30 * number / pictures:.6f}" for number in range(pictures))
         factor = f'[[factor]]\nname = "r"\npath = "material.thickness_exponent"\nlevels = [{levels}]\n\n'
+        text = text[: text.index("[[compare]]")] + text[text.index("[[question]]") :]
         start, end = text.index("[[factor]]"), text.index("[design]")
         (folder / "study.toml").write_text(text[:start] + factor + text[end:], encoding="utf-8")
         yield folder

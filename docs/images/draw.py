@@ -42,7 +42,7 @@ def sheet(pictures: list[tuple[str, Image.Image]], columns: int) -> Image.Image:
 
 
 def thesis_stimuli(edge: int = 300) -> Image.Image:
-    """The nine pictures of the thesis template, one row a factor."""
+    """The fifteen pictures of the thesis template: a row for each factor, then the path-traced ones."""
     with tempfile.TemporaryDirectory() as folder:
         write_template(Path(folder), "thesis")
         entries = build(Path(folder))["stimuli"]
