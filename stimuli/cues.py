@@ -20,7 +20,7 @@ HIGHLIGHT = 0.5  # of the display's white, in every channel
 DARKEST = float(decode_srgb(np.array([1 / 255]))[0])  # linear light of the display's first code value, .0003
 DIGITS, DECIMALS = 6, 9  # kept: sums differ beyond them from processor to processor
 NOTHING_COVERED = "no pixel shows the object"
-MADE_ELSEWHERE = "the picture was made elsewhere, so its thickness is not known"
+OTHER_ORIGIN = "the picture is of other origin, so its thickness is not known"
 
 
 class NoCue(ValueError):
@@ -176,10 +176,10 @@ def cues_of_rendering(image: NDArray[Any], background: tuple[float, float, float
 
 
 def cues_of_picture(pixels: NDArray[np.uint8]) -> Cues:
-    """Cues of a picture made elsewhere, 8-bit sRGB (H, W, 3): of all of it, since nothing says where its object is."""
+    """Cues of a picture of other origin, 8-bit sRGB (H, W, 3): of all of it, since no file says where its object is."""
     linear = decode_srgb(np.arange(256) / 255)[pixels.reshape(-1, 3).T]
     everywhere = np.ones(pixels.shape[:2], bool)
-    return cues_of(linear, np.ones(everywhere.size), everywhere, None, MADE_ELSEWHERE)
+    return cues_of(linear, np.ones(everywhere.size), everywhere, None, OTHER_ORIGIN)
 
 
 def cues_of(

@@ -13,7 +13,7 @@ from analysis.tables import Table, told_once
 from analysis.wording import apa_df, apa_p, counted, interval, no_zero, percent, sentence_case, signed, thesis_p
 
 ELSEWHERE = (
-    "Pictures made elsewhere have cues of their whole area, background included, and no thickness: they are listed in "
+    "Pictures of other origin have cues of their whole area, background included, and no thickness: they are listed in "
     "tables/cues.csv and not analysed here."
 )
 FEW = "“{}” is not analysed here: fewer than two different pictures of the study’s own were rated."

@@ -137,7 +137,7 @@ def test_pictures_made_elsewhere_are_listed_only_and_controls_are_in(tmp_path: P
     assert set(made.tables["cue_slopes"]["pictures"]) == {9}  # eight and the control
     assert set(made.tables["cue_explained"]["pictures"]) == {8}  # those of the factor
     assert len(made.tables["cues"]) == 10
-    assert "Pictures made elsewhere have cues of their whole area" in str(made.body)
+    assert "Pictures of other origin have cues of their whole area" in str(made.body)
     assert "controls in a frame" in made.drawings[0].caption
 
 

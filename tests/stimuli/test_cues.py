@@ -17,8 +17,8 @@ from fakesss.scene import Scene
 from stimuli import picture
 from stimuli.build import build, verify
 from stimuli.cues import (
-    MADE_ELSEWHERE,
     NOTHING_COVERED,
+    OTHER_ORIGIN,
     NoCue,
     cues_of_picture,
     cues_of_rendering,
@@ -255,7 +255,7 @@ def test_a_picture_made_elsewhere_has_cues_of_all_of_it_and_no_thickness() -> No
     assert found.values["mean_luminance"] == pytest.approx(0.5029 / 2, abs=1e-4)
     assert found.values["rms_contrast"] == pytest.approx(1)
     assert found.values["highlight_share"] == 0.5
-    assert found.values["mean_thickness"] is None and found.missing["mean_thickness"] == MADE_ELSEWHERE
+    assert found.values["mean_thickness"] is None and found.missing["mean_thickness"] == OTHER_ORIGIN
 
 
 def test_every_cue_is_documented() -> None:
