@@ -99,10 +99,17 @@ class Curve:
 
     @property
     def recommended(self) -> Level:
-        """The cheapest whose difference from the reference stays below the limit; the best where none does."""
+        """The cheapest whose difference from the reference stays below the limit; the best where none does.
+
+        Of levels whose times cannot be told apart, the one that was declared to be cheaper.
+        """
         fine = [level for level in self.levels if level.errors.flip_everywhere < self.limit]
         best = min(self.levels, key=lambda level: (level.errors.flip_everywhere, level.cost))
-        return min(fine, key=lambda level: level.cost) if fine else best
+        if not fine:
+            return best
+        cheapest = min(fine, key=lambda level: level.cost)
+        alike = (level for level in fine if level.timing.ratio_low <= cheapest.timing.ratio_high)
+        return cheapest if self.knob.baked else next(alike)
 
     def facts(self) -> dict[str, Any]:
         """An entry of the document's `knobs`."""

@@ -12,7 +12,8 @@ Of each scene:
                 "pareto": [values], "recommended": value, "because": words,
                 "published": {"source", "points": [{"value", "ms", "offline_s"}]} (where a seed printed a table)}],
      "unused": [{"name", "because"}],
-     "combinations": [{"values": {knob: value}, "settings": {path: value}, times, errors, "front": bool}],
+     "combinations": [{"values": {knob: value}, "settings": {path: value}, times, errors, "front": bool,
+                       "beside": {the four errors, against the picture with every knob at its reference}}],
      "presets": {"interactive" | "survey" | "reference": {a combination's keys, "because", "met": bool}}}
 
 Errors of combinations and presets are against the exact picture.
@@ -80,7 +81,12 @@ def document(found: Found, number: int, name: str, command: str) -> dict[str, An
 
 def alone(combination: Combination, number: int) -> Combination:
     """As measured in one of the scenes."""
-    return replace(combination, timings=(combination.timings[number],), errors=(combination.errors[number],))
+    return replace(
+        combination,
+        timings=(combination.timings[number],),
+        errors=(combination.errors[number],),
+        beside=(combination.beside[number],),
+    )
 
 
 def measured_by(command: str) -> dict[str, Any]:
@@ -123,7 +129,8 @@ def method(found: Found) -> list[str]:
         "What is baked is told in seconds without any cache; in a picture it costs nothing, so its recommended level "
         "stays below a third of the just noticeable FLIP, and leaves room to what does cost.",
         f"Combinations: Pareto local search, at most {found.effort.combinations} looked at; what nothing beats was "
-        "measured again in turn. Baked knobs stay at their recommended level.",
+        "measured again in turn. Baked knobs stay at their recommended level. `beside` is against the picture with "
+        "every knob at its reference, which the preset survey is held to: what no knob mends, it need not mend.",
     ]
 
 

@@ -9,7 +9,7 @@ from typing import Any
 import fakesss
 from fakesss import cache
 
-VERSION = 1  # raised whenever entries mean something else
+VERSION = 2  # raised whenever entries mean something else
 KIND = "tradeoff"
 
 

@@ -21,7 +21,8 @@ NAMES = ("interactive", "survey", "reference")
 
 def combination(ms: float, flip: float, everywhere: float, **values: Any) -> Combination:
     found = {"rmse": flip / 10, "max_abs": flip, "flip": flip, "flip_everywhere": everywhere}
-    return Combination(values, {}, (Timing(ms / 10, ms / 11, ms / 9, 10.0),), (found,))
+    exact = {name: value + 0.2 for name, value in found.items()} | {"flip": flip}  # what no knob mends
+    return Combination(values, {}, (Timing(ms / 10, ms / 11, ms / 9, 10.0),), (exact,), (found,))
 
 
 FAST, GOOD, FINE, BEST = (
@@ -48,7 +49,9 @@ def test_what_cannot_be_kept_is_said() -> None:
 
 def test_of_several_scenes_the_worst_counts() -> None:
     easy, hard = combination(10, 0.01, 0.05), combination(90, 0.05, 0.3)
-    both = Combination({}, {}, (*easy.timings, *hard.timings), (*easy.errors, *hard.errors))
+    both = Combination(
+        {}, {}, (*easy.timings, *hard.timings), (*easy.errors, *hard.errors), (*easy.beside, *hard.beside)
+    )
     assert both.worst.ms == pytest.approx(90)
     assert both.costs[1:] == (0.05, 0.3)
 
