@@ -17,7 +17,7 @@ float layer_at(vec2 place) { return texture(softened_across, place).r; }
 uniform sampler2D second;
 float layer_at(vec2 place) { return texture(second, place).r; }
 #endif
-uniform vec2 tap;           // distance between taps, shares of the picture's width and height
+uniform vec2 tap;           // distance between taps, shares of the layer's width and height
 uniform float depth_range;  // difference at which a tap's weight reaches 0; sphere radii, or non-linear as published
 #if AS_PUBLISHED
 uniform vec2 clip;

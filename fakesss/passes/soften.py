@@ -12,7 +12,7 @@ from fakesss.frame_graph import Pass
 from fakesss.passes.layer import layer
 from fakesss.passes.sparse import why_not_sparse
 from fakesss.softening import KERNELS, Kernel
-from fakesss.sparse_layer import sparse_size
+from fakesss.sparse_layer import placing, sparse_size
 
 EXACT = "takes the taps that `blur.kernel` says, a knob of the module blur"
 
@@ -25,14 +25,18 @@ def kernel_of(setting: Setting) -> Kernel:
     return KERNELS[setting.scene.blur.kernel]
 
 
-def tap_uniforms(setting: Setting) -> dict[str, Any]:
-    """Those of `glsl/common_blur.glsl`."""
+def tap_uniforms(setting: Setting, every: int = 1) -> dict[str, Any]:
+    """Those of `glsl/common_blur.glsl`, for a layer with every n-th sample.
+
+    Where n does not divide the picture, such a layer's texture is wider than the picture, and a tap a smaller share.
+    """
     view, settings = setting.view, setting.scene.blur
     if setting.published:
         step, depths = (PUBLISHED_STEP, PUBLISHED_STEP), {"clip": (view.near, view.far), "distance": view.distance}
         return {"tap": step, "depth_range": PUBLISHED_RANGE, **depths}
     tap = view.in_picture(2 * settings.step * kernel_of(setting).spacing)
-    return {"tap": tap, "depth_range": 2 * settings.depth_range}
+    scale = placing(setting.size, every)["scale"]
+    return {"tap": (tap[0] * scale[0], tap[1] * scale[1]), "depth_range": 2 * settings.depth_range}
 
 
 def tap_defines(setting: Setting, second_step: bool) -> dict[str, int]:
@@ -58,11 +62,12 @@ def soften(setting: Setting) -> Pass:
 
 def soften_pass(setting: Setting, name: str, source: str, mask: str, target: str, second_step: bool) -> Pass:
     """A full-screen pass over the samples that `mask` covers."""
-    size = sparse_size(setting.size, setting.scene.layers.resolution) if mask == "sparse_coverage" else setting.size
+    every = setting.scene.layers.resolution if mask == "sparse_coverage" else 1
+    size = sparse_size(setting.size, every)
     renamed = {source: "softened_across" if second_step else "second"}
 
     def draw(frame: Frame) -> None:
-        uniforms = {**tap_uniforms(setting), "size": size}
+        uniforms = {**tap_uniforms(setting, every), "size": size}
         frame.fill("soften.frag", uniforms, renamed, **tap_defines(setting, second_step))
 
     return Pass(name, draw, reads=(source, mask), writes={target: layer(setting, size)}, mask=mask)

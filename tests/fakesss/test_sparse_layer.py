@@ -18,6 +18,7 @@ from fakesss.pipeline import build
 from fakesss.problem import BadInput
 from fakesss.renderer import Renderer
 from fakesss.scene import Scene
+from fakesss.softening import KERNELS, softened
 from fakesss.sparse_layer import sparse_size, texel_width, upsampled
 
 EXAMPLES = settings(max_examples=15)
@@ -89,6 +90,26 @@ def test_drawn_is_what_numpy_computes(renderer: Renderer, every: int) -> None:
     np.testing.assert_allclose(data["second"], expected, rtol=1e-5, atol=1e-6)
     thickness = np.clip((data["second"] - data["front"]) / 2, 0, 1) * (data["second"] > 0)
     np.testing.assert_allclose(data["thickness"], thickness, atol=1e-6)
+
+
+@pytest.mark.gl
+@pytest.mark.parametrize("every", [2, 4])
+@pytest.mark.parametrize("side", [48, 49, 50, 51])
+@pytest.mark.parametrize("kernel", ["5x5", "separable"])
+def test_taps_are_as_far_apart_where_n_does_not_divide_the_picture(
+    renderer: Renderer, side: int, every: int, kernel: str
+) -> None:
+    """Softened as the numpy twin does it; the outermost tap falls just short of the next texel."""
+    scene = Scene(object="figure:4000", size=(side, side + 1), supersampling=1)
+    step = 1.2475 * every / side / View.of(scene.camera, scene.size).in_picture(2.0)[0]
+    scene = scene.replace({"layers.resolution": every, "blur.step": step, "blur.kernel": kernel})
+    found = renderer.data(scene, ("sparse_back", "softened"))
+    data = {name: image[::-1].astype(float) for name, image in found.items()}
+    steps = View.of(scene.camera, scene.size).in_picture(2 * scene.blur.step)
+    tap = steps[0] * side / every, steps[1] * (side + 1) / every
+    expected = softened(data["sparse_back"], KERNELS[kernel], tap, 2 * scene.blur.depth_range)
+    assert np.abs(expected - data["sparse_back"]).max() > 0.01
+    np.testing.assert_allclose(data["softened"], expected, atol=1e-6)
 
 
 def plain(layer: Image, every: int) -> Image:
