@@ -13,6 +13,8 @@ from typing import TYPE_CHECKING, Any
 
 from pydantic import BaseModel
 
+from fakesss.problem import BadInput
+
 if TYPE_CHECKING:
     from fakesss.scene import Scene
 
@@ -44,6 +46,34 @@ def from_quality(scene: "Scene") -> dict[str, Any]:
     """The settings that `scene` takes from its quality."""
     own = set(explicit(scene))
     return {path: value for knob in wanted(scene).values() if own.isdisjoint(knob) for path, value in knob.items()}
+
+
+def forget(scene: "Scene", data: dict[str, Any]) -> None:
+    """Drop from `data`, the settings given to `scene`, what its quality filled before the scene was written to a file.
+
+    A manifest's scene has every field, so that what somebody set cannot be told from what its quality gave. There, a
+    knob that is as the quality has it counts as the quality's.
+    """
+    named = wanted(scene)
+    if from_quality(scene):
+        return  # still knows what was given
+    for knob in named.values():
+        if all(scene.at(path) == value for path, value in knob.items()):
+            for path in knob:
+                *parents, leaf = path.split(".")
+                place = data
+                for parent in parents:
+                    place = place[parent]
+                del place[leaf]
+
+
+def check_fills(scene: "Scene", source: str) -> None:
+    """`BadInput` where a quality was asked for that changes nothing, since the scene sets every knob itself."""
+    if scene.quality and not from_quality(scene):
+        raise BadInput(
+            f'{source}: quality "{scene.quality}" has nothing to fill: the scene sets every knob itself, as a '
+            "manifest's scenes do; leave quality out and change the knobs one by one"
+        )
 
 
 def provenance(scene: "Scene") -> dict[str, dict[str, Any]]:

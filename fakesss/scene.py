@@ -209,7 +209,12 @@ class Scene(Strict):
         The changes are made in their order: one may name a light that an earlier one added. Pairs may change one
         field again.
         """
+        from fakesss.quality import check_fills, forget  # which most scenes never need
+
         data = self.model_dump(exclude_unset=True)  # what a quality fills, it fills again
+        asked = dict(changes)
+        if "quality" in asked and asked["quality"] != self.quality:
+            forget(self, data)
         for path, value in changes.items() if isinstance(changes, Mapping) else changes:
             *parents, leaf = check_path(path, source, len(data.get("lights", ()))).split(".")
             place: Any = data
@@ -217,7 +222,10 @@ class Scene(Strict):
                 place = place[int(parent)] if parent.isdecimal() else place.setdefault(parent, {})
             # later paths reach into the lights, so they must be lights; other fields may depend on later changes
             place[leaf] = self.from_dict({path: value}, source).model_dump()[path] if path == "lights" else value
-        return self.from_dict(data, source)
+        made = self.from_dict(data, source)
+        if "quality" in asked:
+            check_fills(made, source)
+        return made
 
     def at(self, path: str) -> Any:
         """The value of the field at `path`, for example `material.backlight` or `lights.0.diffuse`."""

@@ -110,6 +110,25 @@ def test_a_scene_read_from_a_manifest_keeps_its_settings() -> None:
 
 
 @pytest.mark.usefixtures("presets")
+def test_another_quality_of_a_manifests_scene_begins_from_what_was_asked() -> None:
+    """Every field is set there: what is as its quality has it is the quality's."""
+    asked = Scene.from_dict({"quality": "survey", "occlusion": {"rays": 77}}, "scene.toml")
+    read = Scene.from_dict(asked.model_dump(mode="json"), "manifest.json")
+    best = read.replace({"quality": "reference"})
+    assert (best.supersampling, best.blur.kernel, best.occlusion.rays) == (8, "9x9", 77)
+    assert read.replace({"quality": None}).supersampling == Scene().supersampling
+    assert read.replace({"camera.azimuth": 9.0}).supersampling == read.supersampling
+
+
+@pytest.mark.usefixtures("presets")
+def test_a_quality_that_would_change_nothing_is_refused() -> None:
+    whole = Scene.from_dict(Scene().model_dump(mode="json"), "manifest.json")
+    with pytest.raises(BadInput, match=r'^--set: quality "reference" has nothing to fill: the scene sets every knob'):
+        whole.replace({"quality": "reference"}, "--set")
+    assert whole.replace({"quality": None}) == whole
+
+
+@pytest.mark.usefixtures("presets")
 def test_explain_tells_who_gave_a_setting() -> None:
     scene = Scene(object="torus:4000").replace({"quality": "survey", "supersampling": 1})
     told = explain(scene)["quality"]
