@@ -1,7 +1,8 @@
 """Makes the path-traced pictures that are shipped with a template again: `python -m stimuli.rebuild_offline`.
 
-Fourteen minutes on two free cores. What is traced is kept: interrupt it and start it again, it goes on. A lower `noise` in the
-template goes on from the light that is there. Each picture is written as soon as it is ready, with its record.
+Fourteen minutes on two free cores. What is traced is kept: interrupt it and start it again, it goes on. A lower
+`noise` in the template goes on from the light that is there. Each picture is written as soon as it is ready, with its
+record.
 """
 
 import json

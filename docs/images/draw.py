@@ -41,8 +41,8 @@ def sheet(pictures: list[tuple[str, Image.Image]], columns: int) -> Image.Image:
     return page
 
 
-def thesis_stimuli(edge: int = 300) -> Image.Image:
-    """The fifteen pictures of the thesis template: a row for each factor, then the path-traced ones."""
+def thesis_stimuli(edge: int = 256) -> Image.Image:
+    """The fifteen pictures of the thesis template: a row for each factor, beside it a medium under two lights."""
     with tempfile.TemporaryDirectory() as folder:
         write_template(Path(folder), "thesis")
         entries = build(Path(folder))["stimuli"]
@@ -50,9 +50,11 @@ def thesis_stimuli(edge: int = 300) -> Image.Image:
         for entry in entries:
             picture = Image.open(Path(folder) / "stimuli" / entry["file"]).convert("RGB")
             same = f"  (= {entry['same_picture_as']})" if entry["same_picture_as"] else ""
-            caption = f"{entry['id']}  {entry['label']}{same}"
+            caption = f"{entry['id']}  {entry['label'].removesuffix(', denoised')}{same}"
             shown.append((caption, picture.resize((edge, edge), Image.Resampling.LANCZOS)))
-    return sheet(shown, 3)
+    own, offline = shown[:9], shown[9:]
+    rows = [[*own[3 * row : 3 * row + 3], *offline[2 * row : 2 * row + 2]] for row in range(3)]
+    return sheet([picture for row in rows for picture in row], 5)
 
 
 def objects(edge: int = 300) -> Image.Image:
