@@ -37,8 +37,11 @@ def asked_for(stimulus: Stimulus) -> tuple[Scene, PathTracing]:
     return stimulus.scene, stimulus.path_tracing
 
 
-def depends_on(stimulus: Stimulus, made_by: dict[str, str], source: str) -> dict[str, Any]:
-    """What the build key is made of; our renderer's `source` and OpenGL only where they draw the highlights."""
+def depends_on(stimulus: Stimulus, made_by: dict[str, str], source: str, tracing: str) -> dict[str, Any]:
+    """What the build key is made of; our renderer's `source` and OpenGL only where they draw the highlights.
+
+    `tracing` is the source that traces; where only its words changed, the light comes from the cache all the same.
+    """
     scene, settings = asked_for(stimulus)
     ready = shipped(scene, settings)
     if ready is not None:
@@ -46,7 +49,7 @@ def depends_on(stimulus: Stimulus, made_by: dict[str, str], source: str) -> dict
     drawn_by = {"renderer": made_by, "source": source} if settings.highlights else {}
     denoised_by = {"denoiser": installed("pyoidn")} if settings.denoise else {}
     libraries = {"mitsuba": installed("mitsuba"), **{name: made_by[name] for name in LIBRARIES}}
-    return {"software": libraries, **drawn_by, **denoised_by, **shown(scene, settings)}
+    return {"software": libraries, "tracing": tracing, **drawn_by, **denoised_by, **shown(scene, settings)}
 
 
 def installed(package: str) -> str | None:

@@ -32,8 +32,9 @@ PLOTS = ("profile_plot", "relief", "lighting_terms")
 CHECKS = ("browser", "depth_checks", "doctor", "hard_edges", "reference")
 FITTING = ("cli_fit", "fit", "fit_model", "fit_solver", "fit_start", "fit_uncertainty")
 FITTED = ("fit_matched", "fit_leftover", "fit_times", "fit_report", "fit_files")
-ROOMS = ("accuracy",)  # folders of nothing but such
-NOT_DRAWING = frozenset((*COMMANDS, *TIMES, *LOOKS, *PLOTS, *CHECKS, *FITTING, *FITTED))
+TRACING = ("media",)  # with the folder offline: see `tracing_files`
+ROOMS = ("accuracy", "offline")  # folders of nothing but such
+NOT_DRAWING = frozenset((*TRACING, *COMMANDS, *TIMES, *LOOKS, *PLOTS, *CHECKS, *FITTING, *FITTED))
 # What thickness does not depend on; a sweep of any of it measures thickness once.
 ELSEWHERE = ("object", "light", "lights", "shadow", "exposure", "background", "alpha", "occlusion", "blur")
 SURFACE = set(Material.model_fields) - {"thickness"}
@@ -54,7 +55,7 @@ def build_key(stimulus: Stimulus, size: tuple[int, int], folder: Path, made_by: 
     from fakesss.shapes import is_mesh_file
 
     if stimulus.path_tracing is not None:
-        depends = depends_on(stimulus, made_by, source_sha256())
+        depends = depends_on(stimulus, made_by, source_sha256(), source_sha256(tracing=True))
     else:
         depends = {"software": made_by, "source": source_sha256(), "size": size}
     if stimulus.scene is None:
@@ -123,10 +124,10 @@ def read_made_elsewhere(stimulus: Stimulus, size: tuple[int, int], folder: Path)
 
 
 @cache
-def source_sha256() -> str:
-    """Hash of the source that draws, so that a changed shader makes its pictures stale."""
+def source_sha256(tracing: bool = False) -> str:
+    """Hash of the source that draws, so that a changed shader makes its pictures stale; of what traces, likewise."""
     digest = hashlib.sha256()
-    for path in drawing_files():
+    for path in tracing_files() if tracing else drawing_files():
         digest.update(path.name.encode() + b"\0" + path.read_bytes())
     return digest.hexdigest()
 
@@ -136,3 +137,10 @@ def drawing_files() -> list[Path]:
     root = Path(fakesss.__file__).parent
     ours = sorted([*root.rglob("*.py"), *root.rglob("glsl/*"), Path(__file__), Path(__file__).with_name("cues.py")])
     return [path for path in ours if path.is_file() and path.stem not in NOT_DRAWING and path.parent.name not in ROOMS]
+
+
+def tracing_files() -> list[Path]:
+    """The source that path-traced pictures come from; what fits the shader to them is none."""
+    root = Path(fakesss.__file__).parent
+    room = [path for path in sorted((root / "offline").glob("*.py")) if path.stem not in {*FITTING, *FITTED}]
+    return [*(root / f"{stem}.py" for stem in TRACING), *room]

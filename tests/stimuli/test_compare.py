@@ -193,9 +193,16 @@ def test_our_shaders_make_it_stale_only_where_they_draw_its_highlights(
     (folder / "study.toml").write_text(f"{HEAD}{SKIN}{SKIN}highlights = false\n", encoding="utf-8")
     build(folder, quiet=True)
     drawn = drawn_ids(monkeypatch)
-    monkeypatch.setattr("stimuli.picture.source_sha256", lambda: "another shader")
+    monkeypatch.setattr("stimuli.picture.source_sha256", lambda tracing=False: "the same" if tracing else "another")
+    build(folder, quiet=True)
+    drawn.clear()
+    monkeypatch.setattr("stimuli.picture.source_sha256", lambda tracing=False: "the same" if tracing else "a third")
     build(folder, quiet=True)
     assert drawn == ["img01"]
+    monkeypatch.setattr("stimuli.picture.source_sha256", lambda tracing=False: "a tracer" if tracing else "a third")
+    build(folder, quiet=True)
+    assert drawn == ["img01", "img01", "img02"]
+    drawn[:] = ["img01"]
     monkeypatch.setattr(offline, "installed", lambda package: "4.0")
     build(folder, quiet=True)
     assert drawn == ["img01", "img01", "img02"]

@@ -9,7 +9,7 @@ from collections.abc import Iterator
 from pathlib import Path
 
 import fakesss
-from stimuli.picture import NOT_DRAWING, drawing_files
+from stimuli.picture import NOT_DRAWING, drawing_files, tracing_files
 
 ROOT = Path(fakesss.__file__).parent
 MODULES = {path.relative_to(ROOT).with_suffix("").as_posix().replace("/", "."): path for path in ROOT.rglob("*.py")}
@@ -26,10 +26,10 @@ def imports(module: str) -> Iterator[str]:
             yield from (name for name in (base, f"{base}.__init__", *names) if name in MODULES)
 
 
-def drawing_modules() -> set[str]:
+def drawing_modules(called: tuple[str, ...] = CALLED) -> set[str]:
     """All that is imported, directly or not, by what a build calls."""
     found: set[str] = set()
-    waiting = list(CALLED)
+    waiting = list(called)
     while waiting:
         module = waiting.pop()
         if module not in found:
@@ -41,6 +41,12 @@ def drawing_modules() -> set[str]:
 def test_every_module_is_known_to_draw_or_not() -> None:
     stale = {path for path in drawing_files() if path.suffix == ".py" and path.is_relative_to(ROOT)}
     assert stale == {MODULES[module] for module in drawing_modules()}
+
+
+def test_every_module_that_traces_is_known() -> None:
+    traces = drawing_modules(("offline.path_tracing", "offline.outlook")) - drawing_modules()
+    offline = {MODULES[module] for module in traces if module == "media" or module.startswith("offline.")}
+    assert offline <= set(tracing_files())
 
 
 def test_every_shader_is_known_to_draw_or_not() -> None:
