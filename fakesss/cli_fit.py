@@ -45,15 +45,17 @@ def fit(
 
     Example: fakesss fit figure --to medium.marble --size 128x128 --samples 64 -o marble
     """
+    from fakesss.media import medium_named
     from fakesss.offline.fit_files import check_folder, write_report
     from fakesss.offline.fit_report import Named, fit_medium
     from fakesss.offline.settings import PathTracing
     from fakesss.problem import validated
 
     described = scene_named(scene, changes, size)
-    most = samples if samples is not None else (4096 if noise is not None else 256)
-    tracing = {"medium": medium, "size_mm": size_mm, "samples": most, "noise": noise, "seed": seed}
-    settings = validated(PathTracing, tracing, "fit")
+    known = medium_named(medium, "--to").name
+    asked = {"medium": known, "size_mm": size_mm, "samples": samples, "noise": noise, "seed": seed}
+    given = {name: value for name, value in asked.items() if value is not None}
+    settings = validated(PathTracing, given, "fit")
     if out:
         check_folder(out)
     named = Named(Path(scene).name, shlex.join(["fakesss", *sys.argv[1:]]))

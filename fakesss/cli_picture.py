@@ -29,10 +29,12 @@ def drawing(command: Callable[..., None]) -> Callable[..., None]:
 def path_tracing(command: Callable[..., None]) -> Callable[..., None]:
     """The options of a path-traced picture; what is not given is as `PathTracing` has it."""
     for option in (
-        click.option("--denoise", is_flag=True, help="Path-traced: smooth the grain by a neural network."),
+        click.option("--denoise", is_flag=True, default=None, help="Path-traced: smooth the grain by a network."),
+        click.option("--no-highlights", is_flag=True, default=None, help="Path-traced: without the shader's gloss."),
+        click.option("--seed", type=int, help="Path-traced: of the random numbers. [default: 0]"),
         click.option("--size-mm", type=float, help="Path-traced: diameter of the bounding sphere, mm. [default: 30]"),
         click.option("--noise", type=float, help="Path-traced: stop at this RMS error over RMS radiance."),
-        click.option("--samples", type=int, help="Path-traced: per pixel, at most. [default: 256]"),
+        click.option("--samples", type=int, help="Path-traced: per pixel, at most. [default: 256; with --noise 4096]"),
         click.option("--path-traced", "medium", metavar="MEDIUM", help="Path-trace a measured medium, or opaque."),
     ):
         command = option(command)
@@ -64,7 +66,7 @@ def render(
     Example: fakesss render bunny.ply --set material.backlight=0.8 --size 317x211 -o bunny.png
     Example: fakesss render figure --size 256x256 --path-traced marble --noise 0.05 -o marble.png
     """
-    tracing = {name: value for name, value in options.items() if value is not None and value is not False}
+    tracing = {name: value for name, value in options.items() if value is not None}
     if medium is not None or tracing:
         trace(scene_named(scene, changes, size), medium, tracing, out, views, as_json)
         return
@@ -88,13 +90,18 @@ def trace(scene: Any, medium: str | None, tracing: Mapping[str, Any], out: str, 
         raise BadInput(f"{given}: belongs to path-traced pictures; add --path-traced MEDIUM")
     if views:
         raise BadInput("--views: a path-traced picture has no intermediates; leave out one of --views, --path-traced")
-    settings = validated(PathTracing, {"medium": medium, **tracing}, "--path-traced")
+    asked = {"medium": medium, **tracing}
+    if asked.pop("no_highlights", False):
+        asked["highlights"] = False
+    settings = validated(PathTracing, asked, "--path-traced")
     result = traced_file(scene, settings, out)
     for warning in result["warnings"]:
         say(warning)
     spent = "from the cache" if result["cached"] else f"{result['seconds']:.1f} s in all"
     size = f"{result['width']}x{result['height']}"
-    done(result, as_json, f"{out}: {size}, {result['samples']} samples, noise {result['noise']:.2%}, {spent}")
+    noise = "unknown" if result["noise"] is None else f"{result['noise']:.2%}"
+    grain = ", denoised" if result["denoised"] else ""
+    done(result, as_json, f"{out}: {size}, {result['samples']} samples, noise {noise}{grain}, {spent}")
 
 
 @commands.command()

@@ -23,18 +23,19 @@ def check_picture(path: str | Path) -> Path:
     return check_output(path, SUFFIXES, "pictures")
 
 
-def write_image(path: str | Path, linear: NDArray[Any], alpha: bool = False) -> Path:
+def write_image(path: str | Path, linear: NDArray[Any], alpha: bool = False, comment: str = "") -> Path:
     """Write linear RGB (H, W, 3), or RGB and coverage (H, W, 4).
 
     RGB is the whole picture, so a PNG leaves coverage out; with `alpha` it is the picture times its coverage, and the
     file keeps that as its alpha. The file is there whole, or what stood there before still is (`BadInput`).
+    `comment`, ASCII, stands in the file: PNG's text "Comment", OpenEXR's attribute "comments".
     """
     path = check_picture(path)
     with replacing(path) as waiting:
         if path.suffix.lower() == ".png":
-            waiting.write_bytes(encode_png(linear, alpha))
+            waiting.write_bytes(png.commented(encode_png(linear, alpha), comment))
         else:
-            write_exr(waiting, linear, alpha)
+            write_exr(waiting, linear, alpha, comment)
     return path
 
 
@@ -74,7 +75,7 @@ def blocks(picture: NDArray[Any]) -> Iterator[NDArray[Any]]:
     return (picture[start : start + rows] for start in range(0, len(picture), rows))
 
 
-def write_exr(path: Path, linear: NDArray[Any], alpha: bool) -> None:
+def write_exr(path: Path, linear: NDArray[Any], alpha: bool, comment: str = "") -> None:
     """OpenEXR, 32-bit float, ZIP.
 
     Its readers take RGB for multiplied by A. Only with `alpha` is it; else RGB is the picture over its background, and
@@ -87,6 +88,8 @@ def write_exr(path: Path, linear: NDArray[Any], alpha: bool) -> None:
     if picture.shape[2] == 4 and not alpha:
         channels["coverage"] = np.ascontiguousarray(picture[..., 3])
     header = {"compression": OpenEXR.ZIP_COMPRESSION, "type": OpenEXR.scanlineimage}
+    if comment:
+        header["comments"] = comment
     with OpenEXR.File(header, channels) as file:
         try:
             file.write(str(path))

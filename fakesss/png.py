@@ -45,6 +45,12 @@ def encode(size: tuple[int, int], blocks: Iterable[NDArray[np.uint8]], channels:
     return file.getvalue()
 
 
+def commented(file: bytes, comment: str) -> bytes:
+    """A PNG file's bytes with an ASCII `comment` (11.3.3.2) before their end; as they are if it is empty."""
+    end = len(file) - len(chunk(b"IEND", b""))
+    return file[:end] + chunk(b"tEXt", b"Comment\0" + comment.encode("ascii")) + file[end:] if comment else file
+
+
 def chunk(kind: bytes, content: bytes) -> bytes:
     """5.3: length, type, content, check sum."""
     return struct.pack(">I", len(content)) + kind + content + struct.pack(">I", zlib.crc32(kind + content))

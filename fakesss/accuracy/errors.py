@@ -7,6 +7,7 @@ What it is *not*: a model of threshold vision. It knows no masking, and its auth
 """
 
 from dataclasses import dataclass
+from importlib.util import find_spec
 from typing import Any
 
 import numpy as np
@@ -63,6 +64,12 @@ def errors(picture: NDArray[Any], reference: NDArray[Any]) -> Errors:
         flip_map=seen,
         flip_everywhere=float(np.percentile(seen[covered], EVERYWHERE)),
     )
+
+
+def check_flip() -> None:
+    """`BadInput` where FLIP's package is missing; called before slow work, not after it."""
+    if find_spec("flip_evaluator") is None:
+        raise BadInput(MISSING)
 
 
 def flip_map(picture: NDArray[Any], reference: NDArray[Any]) -> NDArray[np.float32]:

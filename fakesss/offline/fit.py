@@ -7,7 +7,7 @@ a path tracer's mean needs. Noise only adds a constant to the error, and standar
 """
 
 from collections.abc import Iterator
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -27,10 +27,11 @@ STARTS = 8
 
 @dataclass(frozen=True)
 class Target:
-    """The picture to come near to: linear RGB over the scene's background, and coverage, without highlights."""
+    """The picture to come near to: linear RGB of the object alone, over black, and coverage, without highlights."""
 
     image: NDArray[np.float32]  # (H, W, 4)
     standard_error: NDArray[np.float32]  # (H, W, 3) of the RGB; 0 of a picture without noise
+    correlation: Floats = field(default_factory=lambda: np.eye(3))  # (3, 3), of the channels' noise in a pixel
 
 
 @dataclass(frozen=True)
@@ -74,14 +75,14 @@ def fit(start: Scene, target: Target, starts: int = STARTS, seed: int = 0, quiet
                 bar.update()
     least = min(found.rmse for found in tries)
     best = next(found for found in tries if found.rmse <= least * (1 + SAME))
-    return concluded(problem_of(bases[best.end.thickness], target), target.standard_error, best, start, tuple(tries))
+    return concluded(problem_of(bases[best.end.thickness], target), target, best, start, tuple(tries))
 
 
 def problem_of(made: Basis, target: Target) -> Problem:
-    """What is to be matched: the target less what the background adds."""
+    """What is to be matched; `BadInput` where there is nothing."""
     if target.image.shape != (*made.covered.shape, 4):
         raise BadInput(f"target: its shape {target.image.shape} is not the scene's; make it at the scene's size")
-    wanted = target.image[made.covered][:, :3].astype(np.float64) - made.behind()
+    wanted = target.image[made.covered][:, :3].astype(np.float64)
     if not (np.isfinite(wanted).all() and (wanted > 0).any()):
         raise BadInput("target: is black where the object is, or not finite, so there is nothing to fit; give it light")
     return Problem(made, wanted)
@@ -102,7 +103,7 @@ def tried(problem: Problem, point: Floats, ended: Ended, start: Material) -> Try
     return Try(from_, to, ended.rmse, ended.evaluations, ended.converged, ended.point)
 
 
-def concluded(problem: Problem, noise: NDArray[np.float32], best: Try, start: Scene, tries: tuple[Try, ...]) -> Fit:
+def concluded(problem: Problem, target: Target, best: Try, start: Scene, tries: tuple[Try, ...]) -> Fit:
     """The best try as a scene; searched on with Kb held where nothing tells it from wb."""
     material, notes = best.end, []
     if spread_of_weight(problem, material, problem.linear(best.point).residual) > max(material.diffuse):
@@ -112,7 +113,8 @@ def concluded(problem: Problem, noise: NDArray[np.float32], best: Try, start: Sc
         notes.append("The target does not tell diffuse_weight from colour and backlight; it was left as it began.")
     notes += told(at_bounds(material))
     scene = start.replace({f"material.{name}": getattr(material, name) for name in Material.model_fields})
-    errors = standard_errors(problem, material, noise[problem.basis.covered].astype(np.float64))
+    noise = target.standard_error[problem.basis.covered].astype(np.float64)
+    errors = standard_errors(problem, material, noise, target.correlation)
     return Fit(scene, start, tries, errors, problem.basis.picture(material), tuple(notes))
 
 

@@ -14,12 +14,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from fakesss.accuracy.errors import errors
+from fakesss.offline.fit_noise import FEWEST, again
 from fakesss.offline.fit_times import Times
-from fakesss.offline.path_tracing import path_traced
-from fakesss.offline.settings import ROUND, PathTracing
+from fakesss.offline.settings import PathTracing
 from fakesss.scene import Scene
-
-SEEDS = 1 << 32
 
 
 @dataclass(frozen=True)
@@ -63,8 +61,6 @@ def where(rungs: list[Rung], flip: float) -> tuple[float, str]:
 
 def ladder(scene: Scene, settings: PathTracing, target: NDArray[Any], quiet: bool | None) -> Iterator[Rung]:
     """Ever more samples, up to the target's; each rung goes on from the one before."""
-    doubled = (2 * ROUND << number for number in count())
+    doubled = (FEWEST << number for number in count())
     for samples in (*takewhile(lambda samples: samples < settings.samples, doubled), settings.samples):
-        changes = {"seed": (settings.seed + 1) % SEEDS, "samples": samples, "noise": None, "highlights": False}
-        traced = path_traced(scene, settings.model_copy(update=changes), quiet=quiet)
-        yield Rung(samples, errors(traced.image, target).flip)
+        yield Rung(samples, errors(again(scene, settings, samples, quiet), target).flip)

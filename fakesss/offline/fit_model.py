@@ -3,9 +3,10 @@
 In linear light a pixel is the mean of its samples, so that with k = Kd, B_r = mean of (1 - t)^r over the samples,
 and A and D the ambient and diffuse terms drawn with all weights and reflectances 1,
 
-    C = ka k A + wd k D + wb (k + Kb) B_r + background not covered,
+    C = ka k A + wd k D + wb (k + Kb) B_r,
 
 exactly: the same samples, supersampling, lights and shadows as the renderer's own picture (tests: to float32 rounding).
+The background is black: what shines through a medium unscattered is of no colour of the object, and not eq. 3.6's.
 Not in it: highlights, `style = "as published"` (which clips before it averages), whatever changes t itself.
 """
 
@@ -24,7 +25,8 @@ from fakesss.scene import Material, Scene
 Floats = NDArray[np.float64]
 
 NOTHING = -1e4  # stands for ln 0: at any exponent above 0.08, exp of it times the exponent is 0
-WHITE = {"material.diffuse": (1.0, 1.0, 1.0), "background": (0.0, 0.0, 0.0), "alpha": False}
+BLACK = {"background": (0.0, 0.0, 0.0), "alpha": False}
+WHITE = {"material.diffuse": (1.0, 1.0, 1.0), **BLACK}
 UNIT = {"material.ambient": 1.0, "material.diffuse_contribution": 1.0, "material.backlight": 1.0}
 THROUGH = {"material.thickness_exponent": 1.0, "material.diffuse_weight": 0.0}
 
@@ -35,7 +37,6 @@ class Basis:
 
     covered: NDArray[np.bool_]  # (H, W)
     coverage: NDArray[np.float32]  # (H, W), 0..1
-    background: Floats  # (3,) linear RGB
     ambient: Floats  # (P, 3): A times the exposure
     diffuse: Floats  # (P, 3): D times the exposure
     log_clear: Floats  # (n n, P): ln(1 - t) of the samples of a pixel, NOTHING where one misses the object
@@ -47,23 +48,19 @@ class Basis:
         return clear.mean(axis=0), exponent * (clear * self.log_clear).mean(axis=0)
 
     def picture(self, material: Material) -> NDArray[np.float32]:
-        """Linear RGB over the background, and coverage (H, W, 4), of the object in this material without highlights."""
+        """Linear RGB over black, and coverage (H, W, 4), of the object in this material without highlights."""
         colour = np.array(material.diffuse)
         glow = material.backlight * (colour + material.diffuse_weight)
         object_ = colour * (material.ambient * self.ambient + material.diffuse_contribution * self.diffuse)
         object_ += np.multiply.outer(self.backlight(material.thickness_exponent)[0], glow)
-        image = np.concatenate([(1 - self.coverage[..., None]) * self.background, self.coverage[..., None]], axis=2)
-        image[self.covered, :3] += object_
-        return image.astype(np.float32)
-
-    def behind(self) -> Floats:
-        """What the background adds to the covered pixels (P, 3)."""
-        return np.multiply.outer(1.0 - self.coverage[self.covered].astype(np.float64), self.background)
+        image = np.zeros((*self.covered.shape, 4), np.float32)
+        image[self.covered, :3], image[..., 3] = object_, self.coverage
+        return image
 
 
 def matte(scene: Scene) -> Scene:
-    """`scene` without highlights, over its background: what is fitted, and compared."""
-    return scene.replace({"material.specular_contribution": 0.0, "alpha": False})
+    """`scene` without highlights, over black: what is fitted, and compared."""
+    return scene.replace({"material.specular_contribution": 0.0, **BLACK})
 
 
 def basis(scene: Scene) -> Basis:
@@ -87,8 +84,7 @@ def basis(scene: Scene) -> Basis:
             'cannot be fitted; set open_surface = "thin" or take a solid object'
         )
     terms = [image[covered][:, :3].astype(np.float64) for image in (ambient, diffuse)]
-    background = np.array(scene.background)
-    return Basis(covered, ambient[..., 3], background, terms[0], terms[1], log_clear, scene.exposure)
+    return Basis(covered, ambient[..., 3], terms[0], terms[1], log_clear, scene.exposure)
 
 
 def of_samples(scene: Scene) -> Floats:

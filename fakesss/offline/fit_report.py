@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from fakesss.accuracy.errors import Errors, errors
+from fakesss.accuracy.errors import Errors, check_flip, errors
 from fakesss.accuracy.tradeoff_document import measured_by
 from fakesss.lights import LARGEST
 from fakesss.media import medium_named
@@ -15,18 +15,22 @@ from fakesss.offline.fit import Fit, Target, Try, fit
 from fakesss.offline.fit_leftover import leftover
 from fakesss.offline.fit_matched import matched
 from fakesss.offline.fit_model import basis, matte
+from fakesss.offline.fit_noise import FEWEST, again, correlation, floor
 from fakesss.offline.fit_solver import EXPONENTS
 from fakesss.offline.fit_start import starting_scene
 from fakesss.offline.fit_times import measured
-from fakesss.offline.path_tracing import PathTraced, path_traced
+from fakesss.offline.path_tracing import path_traced
+from fakesss.offline.physical_scene import lights
 from fakesss.offline.settings import PathTracing
+from fakesss.problem import BadInput
 from fakesss.renderer import shared_renderer
 from fakesss.scene import Material, Scene
 
 NUMBERS = ("thickness_exponent", "backlight", "diffuse_weight", "diffuse_contribution", "ambient")
 METHOD = (
     "Bounded least squares in linear radiance over the pixels that the shader covers, all weighted alike, without "
-    "highlights on either side; separable (variable projection), from several starts and thicknesses.",
+    "highlights on either side, over black, so that neither the background nor what of it shines through a medium "
+    "unscattered is taken for the object; separable (variable projection), from several starts and thicknesses.",
     "Kd, ka, wd, wb and Kb are known up to one factor: the largest channel of Kd is held at the medium's reflectance.",
     "FLIP and RMSE are of the pixels that either picture covers, and of a real rendering of the fitted scene.",
     "Times are measured in turn, path tracing by a few samples that are multiplied up; what the target took when "
@@ -56,12 +60,19 @@ def fit_medium(
 ) -> Report:
     """Fit `scene` to its own path-traced picture. `BadInput` for what cannot be drawn, traced or fitted."""
     medium, plain = medium_named(settings.medium, "--to"), settings.model_copy(update={"highlights": False})
+    check_flip()
     scene = scene.replace({"alpha": False})
+    if not lights(scene):
+        raise BadInput(
+            "scene: no light shines, so the medium is black and there is nothing to fit; raise light.diffuse"
+        )
     basis(scene)  # what cannot be fitted is said before hours of path tracing
-    traced = path_traced(scene, plain, quiet=quiet)
+    alone = matte(scene)
+    traced = path_traced(alone, plain, quiet=quiet)
+    together = correlation(again(alone, plain, FEWEST, quiet), traced.image)
     as_many = plain.model_copy(update={"samples": traced.samples})  # --noise may have stopped it before
     began = time.perf_counter()
-    target = Target(traced.image, traced.standard_error)
+    target = Target(traced.image, traced.standard_error, together)
     found = fit(starting_scene(scene, medium, settings.size_mm), target, starts, seed, quiet)
     taken = time.perf_counter() - began
     fitted, start = (shared_renderer().render(matte(each)).image for each in (found.scene, found.start))
@@ -77,13 +88,13 @@ def fit_medium(
         "starts": [tried(one) for one in found.tries],
         **numbers(near),
         "start_errors": numbers(errors(start, traced.image)),
-        "noise": floor(traced, near, seed),
+        "noise": floor(traced, together, near, seed),
         "model_max_abs": float(np.abs(fitted - found.picture).max()),
         "seconds": {"shader": times.shader, "path_traced": traced.samples * times.sample, "fit": taken},
         "speed_up": traced.samples * times.ratio,
         "leftover": leftover(found.scene, fitted, traced.image, traced.standard_error),
-        "matched": matched(scene, as_many, traced.image, near.flip, times, quiet),
-        "notes": list(found.notes),
+        "matched": matched(alone, as_many, traced.image, near.flip, times, quiet),
+        "notes": [*traced.warnings, *found.notes],
         "method": list(METHOD),
         "target": traced.provenance,
         "gl_renderer": shared_renderer().gpu.renderer,
@@ -108,18 +119,6 @@ def concluded(document: dict[str, Any]) -> dict[str, Any]:
 def numbers(found: Errors) -> dict[str, float]:
     """The errors that are numbers."""
     return {"rmse": found.rmse, "max_abs": found.max_abs, "flip": found.flip}
-
-
-def floor(traced: PathTraced, near: Errors, seed: int) -> dict[str, float]:
-    """What the target's own noise sets: errors of it with as much noise again; and RMSE with noise taken out.
-
-    The noise added is Gaussian, which a path tracer's is not in single pixels.
-    """
-    generator, again = np.random.default_rng(seed), traced.image.copy()
-    again[..., :3] += generator.standard_normal(traced.standard_error.shape) * traced.standard_error
-    alike = errors(again, traced.image)
-    misfit = float(np.sqrt(max(near.rmse**2 - alike.rmse**2, 0.0)))
-    return {**numbers(alike), "relative": traced.noise, "samples": traced.samples, "misfit_rmse": misfit}
 
 
 def parameters(found: Fit) -> dict[str, Any]:

@@ -1,9 +1,11 @@
 """How far the noise of the wanted picture leaves fitted parameters open, and whether the picture holds Kb at all.
 
 Linearised at the fit, all parameters free at once but those at a bound and the largest channel of Kd, which only sets
-the scale of the others. With J the derivatives of the picture, G the inverse of J'J and V the variance of
-the pixels' noise, the standard errors are the square roots of the diagonal of G J' V J G (White 1980: right
-whatever the weights). They tell what another rendering of as many samples would change, not how wrong the model is.
+the scale of the others. With J the derivatives of the picture, G the inverse of J'J and V the covariance of
+the picture's noise, the standard errors are the square roots of the diagonal of G J' V J G (White 1980: right
+whatever the weights). Pixels are independent, the channels of a pixel are not (`fit_noise`). They tell about what
+another rendering of as many samples would change, not how wrong the model is; that it is wrong changes them too, by
+the curvature of the picture times the misfit, which is left out.
 """
 
 import numpy as np
@@ -17,16 +19,19 @@ CLOSE = 1e-6  # relative; a parameter that near to its bound is at it
 WEIGHT = "diffuse_weight"
 
 
-def standard_errors(problem: Problem, material: Material, noise: Floats) -> dict[str, float]:
-    """By field of the material ("diffuse.0", ... for channels of Kd), from `noise` (P, 3), the pixels' own.
+def standard_errors(problem: Problem, material: Material, noise: Floats, correlation: Floats) -> dict[str, float]:
+    """By field of the material ("diffuse.0", ... for channels of Kd).
+
+    From `noise` (P, 3), the standard errors of the target's pixels, and its `correlation` (3, 3) between channels.
 
     Not in it: what is held or at a bound. Infinite: what the picture does not depend on.
     """
     held = at_bounds(material) | (set() if problem.tint is None else {WEIGHT})
     names, flat = columns(problem, material, held)
     inverse, lost = inverted(flat)
-    noisy = noise.ravel()[:, None] * flat
-    variance = np.maximum(np.diag(inverse @ (noisy.T @ noisy) @ inverse), 0.0)
+    noisy = (noise.ravel()[:, None] * flat).reshape(-1, CHANNELS, flat.shape[1])
+    together = np.tensordot(noisy, np.tensordot(noisy, correlation, (1, 0)), ((0, 1), (0, 2)))
+    variance = np.maximum(np.diag(inverse @ together @ inverse), 0.0)
     return dict(zip(names, map(float, np.where(lost, np.inf, np.sqrt(variance))), strict=True))
 
 

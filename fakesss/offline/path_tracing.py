@@ -3,6 +3,7 @@
 Same mesh, camera and lights as the shader's picture of the scene. What they leave out is said in their provenance.
 """
 
+import math
 import time
 from dataclasses import dataclass
 from importlib.metadata import PackageNotFoundError, version
@@ -46,11 +47,12 @@ class PathTraced:
 
     image: Float32  # (H, W, 4): linear RGB over the background, and coverage, as `fakesss.render` gives it
     standard_error: Float32  # (H, W, 3), of its RGB
-    noise: float  # RMS standard error over RMS radiance of the object without highlights, pixels it covers
+    noise: float  # RMS standard error over RMS radiance of the object without highlights, pixels it covers; or inf
     samples: int  # per pixel
     seconds: float  # of tracing, all sessions together
     cached: bool  # nothing was traced this time
     provenance: dict[str, Any]
+    warnings: tuple[str, ...] = ()  # one sentence each
 
 
 def path_traced(scene: Scene, settings: PathTracing, *, quiet: bool | None = None) -> PathTraced:
@@ -59,20 +61,42 @@ def path_traced(scene: Scene, settings: PathTracing, *, quiet: bool | None = Non
     Equal settings give equal bytes, however often they were interrupted. `quiet`: without a progress bar; None:
     with one on a terminal only. Raises `BadInput` for what no physical scene can be.
     """
+    plan = planned(scene, settings)
+    gloss = highlights(scene) if settings.highlights else None  # before hours of tracing: there may be no OpenGL
+    extinction = None if plan.medium is None else per_radius(plan.medium, settings.size_mm)
+    outline = silhouette(plan.mesh, View.of(scene.camera, scene.size), scene.size, extinction)
+    tally = plan.tally
+    if not plan.done:
+        tracer = Tracer(scene, plan.mesh, plan.medium, settings.size_mm, settings.seed)
+        tally = go_on(tally, tracer, outline.coverage > 0, settings, plan.shelf, quiet)
+    image = finished(scene, settings, tally, outline, gloss)
+    error = (scene.exposure * tally.standard_error).astype(np.float32)
+    samples, facts = tally.rounds * ROUND, provenance(scene, plan.mesh, plan.medium, settings, tally)
+    warned = warnings(plan.mesh, plan.medium, settings, tally)
+    return PathTraced(image, error, tally.noise, samples, tally.seconds, plan.done, facts, warned)
+
+
+@dataclass(frozen=True)
+class Plan:
+    """What is to be traced, and what of it is there already."""
+
+    medium: Medium | None  # None: opaque
+    mesh: Mesh
+    shelf: Shelf
+    tally: Tally
+    done: bool  # it has all the rounds that the settings ask for
+
+
+def planned(scene: Scene, settings: PathTracing) -> Plan:
+    """The plan; `BadInput` for what no physical scene can be, and for a package that is missing."""
     medium = None if settings.medium == OPAQUE else medium_named(settings.medium, "medium")
     mesh = load_object(scene.object)
     check(scene, mesh, medium)
     if settings.denoise:
         check_denoiser()
-    extinction = None if medium is None else per_radius(medium, settings.size_mm)
-    outline = silhouette(mesh, View.of(scene.camera, scene.size), scene.size, extinction)
     shelf = Shelf(kept_at(scene, mesh, medium, settings), scene.size)
     tally = kept(shelf, settings)
-    cached = tally.rounds == settings.rounds(tally.noises)
-    if not cached:
-        tracer = Tracer(scene, mesh, medium, settings.size_mm, settings.seed)
-        go_on(tally, tracer, outline.coverage > 0, settings, shelf, quiet)
-    return finished(scene, mesh, medium, settings, tally, outline, cached)
+    return Plan(medium, mesh, shelf, tally, 0 < tally.rounds == settings.rounds(tally.ratios))
 
 
 def check(scene: Scene, mesh: Mesh, medium: Medium | None) -> None:
@@ -116,7 +140,7 @@ def kept(shelf: Shelf, settings: PathTracing) -> Tally:
     tallies = sorted(shelf.tallies(), key=lambda tally: tally.rounds)
     if not tallies:
         return Tally.empty(shelf.size)
-    end = settings.rounds(tallies[-1].noises)
+    end = settings.rounds(tallies[-1].ratios)
     return next((tally for tally in reversed(tallies) if tally.rounds <= end), Tally.empty(shelf.size))
 
 
@@ -127,20 +151,21 @@ def go_on(
     settings: PathTracing,
     shelf: Shelf,
     quiet: bool | None,
-) -> None:
-    """Add rounds until the settings are met. What was added is kept on the way and when interrupted."""
+) -> Tally:
+    """`tally` and as many rounds more as the settings ask for. They are kept on the way and when interrupted."""
     done = tally.rounds * ROUND
     label = f"{settings.medium} by path tracing"
     with tqdm(total=settings.samples, initial=done, unit="sample", desc=label, disable=quiet) as bar:
         saved = time.perf_counter()
         try:
-            while tally.rounds < settings.rounds(tally.noises):
+            while tally.rounds < settings.rounds(tally.ratios):
                 started = time.perf_counter()
                 radiance = tracer(tally.rounds)
                 now = time.perf_counter()
-                tally.add(radiance, covered, now - started)
+                tally = tally.added(radiance, covered, now - started)
+                bar.total = settings.foreseen(tally.rounds, tally.ratios[-1])
+                bar.set_postfix(noise=f"{tally.noise:.2%}", refresh=False)
                 bar.update(ROUND)
-                bar.set_postfix(noise=f"{tally.noises[-1]:.2%}")
                 if now - saved > KEEP_EVERY:
                     shelf.keep(tally, finished=False)
                     saved = now
@@ -148,29 +173,21 @@ def go_on(
             shelf.keep(tally, finished=False)
             raise
     shelf.keep(tally, finished=True)
+    return tally
 
 
 def finished(
-    scene: Scene,
-    mesh: Mesh,
-    medium: Medium | None,
-    settings: PathTracing,
-    tally: Tally,
-    outline: Silhouette,
-    cached: bool,
-) -> PathTraced:
+    scene: Scene, settings: PathTracing, tally: Tally, outline: Silhouette, gloss: NDArray[np.float64] | None
+) -> Float32:
     """The tally as a picture: exposed, over the background, denoised if asked for, with highlights."""
     rgb = scene.exposure * tally.mean
     if not scene.alpha:
         rgb += np.array(scene.background) * (1 - outline.coverage[..., None] + outline.through)
     if settings.denoise:
         rgb = denoised(rgb, outline.coverage)
-    if settings.highlights:
-        rgb += highlights(scene)
-    image = np.concatenate([rgb, outline.coverage[..., None]], axis=2).astype(np.float32)
-    error = (scene.exposure * tally.standard_error).astype(np.float32)
-    facts = provenance(scene, mesh, medium, settings, tally)
-    return PathTraced(image, error, tally.noises[-1], tally.rounds * ROUND, tally.seconds, cached, facts)
+    if gloss is not None:
+        rgb += gloss
+    return np.concatenate([rgb, outline.coverage[..., None]], axis=2).astype(np.float32)
 
 
 def highlights(scene: Scene) -> NDArray[np.float64]:
@@ -198,10 +215,26 @@ def provenance(scene: Scene, mesh: Mesh, medium: Medium | None, settings: PathTr
         "sigma_s_prime": medium and list(medium.sigma_s_prime),
         "sigma_a": medium and list(medium.sigma_a),
         "samples": tally.rounds * ROUND,
-        "noise": tally.noises[-1],
+        "noise": tally.noise if math.isfinite(tally.noise) else None,
         "seconds": tally.seconds,
         "scene_sha256": scene.sha256(),
         "mesh_sha256": mesh.sha256,
         "denoised": denoiser() if settings.denoise else False,
         "leaves_out": left_out,
     }
+
+
+def warnings(mesh: Mesh, medium: Medium | None, settings: PathTracing, tally: Tally) -> tuple[str, ...]:
+    """What a person should know of the picture, one sentence each."""
+    said = []
+    if not settings.met(tally.ratios[-1]):
+        reached = f"{tally.noise:.2%}" if math.isfinite(tally.noise) else "unknown, as hardly any path met light"
+        said.append(
+            f"The noise after {settings.samples} samples is {reached}, not {settings.noise:.2%}; raise samples."
+        )
+    if medium is not None and not is_solid(mesh):
+        said.append(
+            "Parts of the object overlap: its medium ends where the first of them is left, and the background shines "
+            "through as if each were by itself; join them to one surface."
+        )
+    return tuple(said)

@@ -53,8 +53,7 @@ def cast(mesh: Mesh, view: View, size: tuple[int, int], extinction: Floats | Non
         hit[start + met] = 1
         if extinction is not None and len(met):
             way = np.maximum(np.nan_to_num(paths(hits, hits.distances)[met], nan=np.inf), 0)
-            with np.errstate(invalid="ignore"):  # an endless way through what takes nothing
-                through[start + met] = np.nan_to_num(np.exp(-extinction * way[:, None]))
+            through[start + met] = np.exp(-extinction * way[:, None])
     return {"coverage": pixel_means(hit[:, None], size)[..., 0], "through": pixel_means(through, size)}
 
 

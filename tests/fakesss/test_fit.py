@@ -67,12 +67,17 @@ def test_known_parameters_are_found_again(renderer: Renderer, changes: dict[str,
     np.testing.assert_allclose(again, found.picture, atol=1e-5)
 
 
+TOGETHER = np.array([[1.0, 0.8, 0.6], [0.8, 1.0, 0.9], [0.6, 0.9, 1.0]])  # of the channels' noise
+
+
 def noisy(renderer: Renderer, seed: int) -> Target:
-    """With noise of a known standard error, larger where the picture is brighter."""
+    """With noise of a known standard error, larger where the picture is brighter, and of a known correlation."""
     picture = clean(renderer, SCENE).image.copy()
     error = (0.02 * np.sqrt(picture[..., :3] + 1e-3)).astype(np.float32)
-    picture[..., :3] += np.random.default_rng(seed).standard_normal(error.shape) * error
-    return Target(picture, error)
+    picture[..., :3] += (
+        np.random.default_rng(seed).standard_normal(error.shape) @ np.linalg.cholesky(TOGETHER).T * error
+    )
+    return Target(picture, error, TOGETHER)
 
 
 def deviations(renderer: Renderer, seed: int) -> list[float]:

@@ -13,7 +13,7 @@ import pytest
 from numpy.typing import NDArray
 
 from fakesss.media import MEDIA, Medium
-from fakesss.offline import path_tracing
+from fakesss.offline import path_tracing, tally
 from fakesss.offline.path_tracing import PathTraced, PathTracing, path_traced
 from fakesss.offline.settings import ROUND
 from fakesss.offline.tally import Tally
@@ -67,14 +67,15 @@ def equal(a: PathTraced, b: PathTraced) -> bool:
 
 def test_the_standard_error_is_that_of_the_mean_of_rounds() -> None:
     rounds = np.random.default_rng(1).random((7, 4, 5, 3))
-    tally, covered = Tally.empty((5, 4)), np.ones((4, 5), bool)
+    added, covered = Tally.empty((5, 4)), np.ones((4, 5), bool)
     for radiance in rounds:
-        tally.add(radiance, covered, 0.5)
+        added = added.added(radiance, covered, 0.5)
     expected = rounds.std(axis=0, ddof=1) / np.sqrt(7)
-    np.testing.assert_allclose(tally.mean, rounds.mean(axis=0))
-    np.testing.assert_allclose(tally.standard_error, expected)
-    assert tally.noises[-1] == pytest.approx(np.sqrt((expected**2).mean() / (tally.mean**2).mean()))
-    assert tally.noises[0] == np.inf and tally.seconds == 3.5
+    np.testing.assert_allclose(added.mean, rounds.mean(axis=0))
+    np.testing.assert_allclose(added.standard_error, expected)
+    alone = (added.mean**2).mean() - (expected**2).mean()  # the grain's own power is not the radiance's
+    assert added.noise == pytest.approx(np.sqrt((expected**2).mean() / alone))
+    assert added.ratios[0] == np.inf and added.seconds == 3.5
 
 
 def test_what_is_finished_is_not_traced_again(fake: type[FakeTracer]) -> None:
@@ -160,6 +161,87 @@ def test_the_denoiser_smooths_the_picture_and_marks_it() -> None:
     assert errors[1] < 0.5 * errors[0]
     assert smooth.provenance["denoised"].startswith("Open Image Denoise") and not rough.provenance["denoised"]
     assert smooth.noise == rough.noise
+
+
+def test_a_quick_preview_leaves_the_interrupted_long_job_alone(fake: type[FakeTracer]) -> None:
+    fake.stop_at = 9
+    with pytest.raises(KeyboardInterrupt):
+        traced(80)
+    fake.stop_at = 5
+    with pytest.raises(KeyboardInterrupt):
+        traced(32)
+    fake.stop_at, fake.traced = None, []
+    assert traced(16).samples == 16 and fake.traced == list(range(4))
+    fake.traced = []
+    traced(80)
+    assert fake.traced == list(range(9, 20))
+
+
+def test_before_the_first_round_nothing_is_kept(fake: type[FakeTracer], tmp_path: Path) -> None:
+    fake.stop_at = 0
+    with pytest.raises(KeyboardInterrupt):
+        traced(16)
+    assert not list(tmp_path.glob("cache/path-traced/*/*.npz"))
+
+
+def test_interrupted_while_adding_a_round_it_keeps_the_rounds_before(
+    fake: type[FakeTracer], monkeypatch: pytest.MonkeyPatch, tmp_path: Path
+) -> None:
+    asked, whole = [], tally.ratio
+
+    def ratio(*arrays: NDArray[np.float64]) -> float:
+        asked.append(arrays)
+        if len(asked) == 4:
+            raise KeyboardInterrupt
+        return whole(*arrays)
+
+    with monkeypatch.context() as patch, pytest.raises(KeyboardInterrupt):
+        patch.setattr(tally, "ratio", ratio)
+        traced(40)
+    resumed = traced(40)
+    monkeypatch.setenv("FAKESSS_CACHE", str(tmp_path / "other"))
+    assert equal(resumed, traced(40))
+
+
+class Dark(FakeTracer):
+    """No path meets light."""
+
+    def __call__(self, number: int) -> NDArray[np.float64]:
+        return 0 * super().__call__(number)
+
+
+class Firefly(FakeTracer):
+    """One path in all rounds meets light."""
+
+    def __call__(self, number: int) -> NDArray[np.float64]:
+        return float(number == 2) * super().__call__(number)
+
+
+@pytest.mark.parametrize("tracer", [Dark, Firefly])
+def test_a_picture_of_nothing_but_noise_meets_no_noise_target(
+    fake: type[FakeTracer], monkeypatch: pytest.MonkeyPatch, tracer: type[FakeTracer]
+) -> None:
+    monkeypatch.setattr(path_tracing, "Tracer", tracer)
+    picture = traced(64, noise=0.99)
+    assert picture.samples == 64 and picture.noise > 1e3 and "hardly any path met light" in picture.warnings[0]
+
+
+def test_a_noise_that_was_not_reached_is_said(fake: type[FakeTracer]) -> None:
+    missed, met = traced(64, noise=0.01), traced(64, noise=0.5)
+    assert missed.warnings == (f"The noise after 64 samples is {missed.noise:.2%}, not 1.00%; raise samples.",)
+    assert not met.warnings and not traced(64).warnings
+
+
+def test_samples_left_empty_are_more_where_a_noise_is_asked_for() -> None:
+    assert PathTracing(medium="marble").samples == 256
+    assert PathTracing(medium="marble", noise=0.05).samples == 4096
+    assert PathTracing(medium="marble", noise=0.05, samples=64).samples == 64
+
+
+def test_the_end_is_foreseen_from_the_noise() -> None:
+    settings = PathTracing(medium="marble", noise=0.05)
+    assert [settings.foreseen(8, ratio) for ratio in (0.1, 0.04, np.inf, 9.0)] == [128, 32, 4096, 4096]
+    assert PathTracing(medium="marble").foreseen(8, 0.1) == 256
 
 
 KILLED = """
