@@ -5,11 +5,13 @@ one run, since the machine's speed drifts; a time is the median of `REPEATS` pic
 back. The baseline is the fastest direct light we know (`fakesss.direct_light`), back faces culled.
 """
 
+import contextlib
 import os
 import platform
 import statistics
 import time
 from collections.abc import Callable, Mapping, Sequence
+from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -62,10 +64,19 @@ def machine() -> dict[str, Any]:
     """What the figures are of."""
     return {
         **renderer_facts(),
-        "processor": platform.processor() or platform.machine(),
+        "processor": processor(),
         "cores": os.cpu_count(),
         "python": platform.python_version(),
     }
+
+
+def processor() -> str:
+    """Its model, where the system tells; else its kind."""
+    with contextlib.suppress(OSError):
+        for line in Path("/proc/cpuinfo").read_text(encoding="utf-8").splitlines():
+            if line.startswith("model name"):
+                return line.partition(":")[2].strip()
+    return platform.processor() or platform.machine()
 
 
 def row(renderer: Renderer, scene: Scene, repeats: int) -> dict[str, Any]:

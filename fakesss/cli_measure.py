@@ -1,6 +1,7 @@
 """Commands that measure: bench, tradeoff."""
 
 import json
+import math
 import shlex
 import sys
 from collections.abc import Mapping, Sequence
@@ -49,15 +50,23 @@ def places(folder: Path) -> tuple[Path, Path]:
     return figures, tables
 
 
+def finite(context: click.Context, option: click.Parameter, value: float) -> float:
+    """`value`, unless it is nan or infinite, which `FloatRange` lets pass."""
+    if not math.isfinite(value):
+        raise click.BadParameter(f"{value} is no number of milliseconds; give one above 0", context, option)
+    return value
+
+
 @commands.command()
 @click.argument("scenes", nargs=-1, required=True, metavar="SCENE...")
 @click.option("--set", "changes", multiple=True, metavar="PATH=VALUE", help="Change one field of the scene.")
 @click.option("--size", metavar="WxH", help="Pixels, for example 512x512.")
 @click.option("--knob", "names", multiple=True, metavar="NAME", help="Only this one; again for more.")
-@click.option("--quick", is_flag=True, help="Three rounds instead of nine, and few combinations: a first look.")
+@click.option("--quick", is_flag=True, help="Six rounds instead of fifteen, and few combinations: a first look.")
 @click.option(
-    "--budget-ms", default=33.0, show_default=True, type=click.FloatRange(0.1), help="Of the interactive preset."
-)
+    "--budget-ms", default=33.0, show_default=True, type=click.FloatRange(0.1), callback=finite,
+    help="Of the interactive preset.",
+)  # fmt: skip
 @click.option("-o", "--out", default="tradeoff", show_default=True, type=click.Path(file_okay=False), help="A folder.")
 @click.option("--presets-out", type=click.Path(dir_okay=False), help="Write the presets as fakesss/presets.toml is.")
 @AS_JSON
@@ -94,6 +103,7 @@ def tradeoff(
         say(f"{folder / 'index.html'}: what accuracy costs in time")
     if presets_out:
         write_atomically(Path(presets_out), presets_text(found, scenes, made[0]).encode())
+    found.kept.forget()
     done(made[0] if len(made) == 1 else {"scenes": made}, as_json, "\n".join(map(as_text, made)))
 
 
@@ -102,8 +112,9 @@ def folders_of(out: Path, scenes: Sequence[str]) -> list[Path]:
     several = [out / f"{number}-{Path(name.partition(':')[0]).stem}" for number, name in enumerate(scenes, 1)]
     folders = several if len(scenes) > 1 else [out]
     for folder in folders:
-        make_folder(folder)
-        check_writable(folder / "tradeoff.json")
+        make_folder(folder / "figures")
+        for name in ("index.html", "tradeoff.json", "tradeoff.csv", "figures/any.svg"):
+            check_writable(folder / name)
     return folders
 
 
@@ -123,7 +134,9 @@ def presets_text(found: Any, scenes: Sequence[str], document: Mapping[str, Any])
     from fakesss.accuracy.presets import as_toml
 
     by = {key: document[key] for key in ("command", "date", "machine")}
-    return as_toml(found.presets, found.asked, {**by, "scenes": list(scenes), "size": list(found.scenes[0].size)})
+    rounds = {"rounds": {"knobs": found.effort.rounds, "combinations": found.effort.again}}
+    size = list(found.scenes[0].size)
+    return as_toml(found.presets, found.asked, {**by, "scenes": list(scenes), "size": size, **rounds})
 
 
 def command_line() -> str:

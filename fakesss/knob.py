@@ -31,11 +31,11 @@ class Knob:
     """A choice of accuracy, with what its error is measured against."""
 
     name: str
-    levels: tuple[Level, ...]  # cheapest first
+    levels: tuple[Level, ...]  # as a reader looks for them; what is faster or nearer is measured
     reference: Level  # what the levels tend to; one of them or beyond
     error: str  # what is wrong at a lower level, in words
     unused: Reason
-    order: float | None = None  # least p of an error that falls as value^-p; None where no such law is known
+    order: float | None = None  # expected p of an error that falls as value^-p; None where no such law is known
     beside: Value | None = None  # the level at which other knobs are measured; None: the reference
     baked: str = ""  # what it makes: once and kept, costing seconds before the picture and nothing in it
 
@@ -46,7 +46,7 @@ class Knob:
 
     @property
     def all_levels(self) -> tuple[Level, ...]:
-        """Its levels and the reference, each once, cheapest first."""
+        """Its levels and the reference, each once."""
         return self.levels if self.reference in self.levels else (*self.levels, self.reference)
 
     @property
@@ -55,13 +55,18 @@ class Knob:
         return self.reference if self.beside is None else self.level(self.beside)
 
     @property
-    def best(self) -> int:
-        """Place of the most exact of its levels: the reference, or the last where that lies beyond."""
+    def best_place(self) -> int:
+        """Of the most exact of its levels: the reference, or the last where that lies beyond."""
         return self.levels.index(self.reference) if self.reference in self.levels else len(self.levels) - 1
 
     def level(self, value: Value) -> Level:
         """The level of this value."""
         return next(level for level in self.all_levels if level.value == value)
+
+
+def spread_order(dimensions: int) -> float:
+    """p of an error N^-p of N samples spread evenly in so many dimensions, of something that jumps (Mitchell 1996)."""
+    return 0.5 + 0.5 / dimensions
 
 
 def levels(path: str, values: tuple[Value, ...]) -> tuple[Level, ...]:

@@ -8,7 +8,7 @@ from matplotlib.axes import Axes
 from fakesss.accuracy.drawings import BLUE, VERMILION, Drawing, drawn, panel_row, styled
 from fakesss.accuracy.drawings_axes import just_noticeable, label_points, logarithmic, on_scale
 from fakesss.accuracy.errors import JUST_NOTICEABLE
-from fakesss.accuracy.page_curves import Point
+from fakesss.accuracy.page_curves import Point, band_name
 
 PANEL = 3.6, 2.9  # inches
 METRICS = {"flip": "FLIP, mean", "flip_everywhere": "FLIP in 99.9 % of the pixels"}
@@ -50,12 +50,17 @@ def caption_of(points: Sequence[Point], metrics: Sequence[str]) -> str:
     named = [point.text for point in points if point.text]
     sentences = [
         "Combinations of all knobs: FLIP against the exact picture, over the time of a picture, both axes logarithmic; "
-        "horizontal bars are 95 % intervals, the line steps along what nothing measured beats."
+        f"horizontal bars are each time’s {band_name(points)}. The line steps along what nothing measured beats in "
+        "time and mean FLIP."
     ]
     if named:
         sentences.append(f"Diamonds are the presets: {', '.join(named)}.")
     if "flip_everywhere" in metrics:
-        sentences.append(f"The dashed line is a just noticeable difference of lightness, {JUST_NOTICEABLE:.3f}.")
+        sentences.append(
+            "On the right the line goes along the same combinations, at the least that any of them reached so far. The "
+            f"dashed line is a just noticeable difference of lightness, {JUST_NOTICEABLE:.3f}; the preset survey keeps "
+            "below it from the preset reference’s picture, not from the exact one that is plotted here."
+        )
     if any(getattr(point, metric) == 0 for point in points for metric in metrics):
         sentences.append("What has no error at all stands on the dotted line: a logarithmic axis has no zero.")
     return " ".join(sentences)

@@ -10,7 +10,7 @@ from matplotlib.ticker import FixedLocator, FuncFormatter
 from fakesss.accuracy.drawings import BLUE, GREEN, INK, VERMILION, Drawing, drawn, panel_row, styled
 from fakesss.accuracy.drawings_axes import Float, just_noticeable, label_points, logarithmic, on_scale
 from fakesss.accuracy.errors import JUST_NOTICEABLE
-from fakesss.accuracy.page_curves import Curve, Point
+from fakesss.accuracy.page_curves import Curve, Point, band_name
 
 PANEL = 2.55, 2.5  # inches
 NUMBERS = 6
@@ -33,7 +33,7 @@ def knob_drawing(curve: Curve, stem: str, order: Mapping[str, Any] | None) -> Dr
 
 
 def time_panel(axes: Axes, curve: Curve, metric: str) -> None:
-    """One error against time; numbers joined by a line within its 95 % band, kinds for themselves."""
+    """One error against time; numbers joined by a line within its band, kinds for themselves."""
     points = curve.points
     also = everywhere(points) if metric == "flip" else []
     x, no_time = on_scale([point.cost for point in points])
@@ -112,7 +112,7 @@ def caption_of(curve: Curve, has_order: bool) -> str:
         "axes logarithmic; below and to the left is better."
     ]
     if any(point.low for point in curve.points):
-        sentences.append("The band is the 95 % interval of the time.")
+        sentences.append(f"Shaded and barred is each time’s {band_name(curve.points)}.")
     if curve.recommended:
         sentences.append(f"The diamond is the recommended value, {curve.recommended}.")
     if everywhere(curve.points):

@@ -1,13 +1,16 @@
 """Times of pictures that are compared with one another, drawn in turn within one run.
 
-A machine's speed drifts by more than two settings differ. So a round draws every picture and a fixed *baseline* once,
-and what is quoted is the ratio of the two within a round: the median over rounds, with the band in which the true
-median lies with 95% confidence, from order statistics (no distribution assumed). Milliseconds are that ratio times
-the median of the baseline over the whole run. A picture counts from the call until OpenGL has finished it, on
+A machine's speed drifts by more than two settings differ, within a round too. So every picture stands between two of
+a fixed *baseline*, in an order that is shuffled for each round, and what is quoted is its ratio to their mean: the
+median over rounds, with the band that order statistics give it (no distribution assumed) and how often that band holds
+the true median. Two pictures are told apart by the ratios of their ratios, round by round. Milliseconds are the ratio
+times the median of the baseline, one for a scene. A picture counts from the call until OpenGL has finished it, on
 processor and GPU; it is not read back. Before each, the same is drawn once without counting, since buffers of another
 size or mesh were just in use. Shadow maps are drawn anew, as they are when light, camera or object move.
 """
 
+import os
+import random
 import statistics
 import time
 from collections.abc import Callable, Hashable, Mapping, Sequence
@@ -23,7 +26,8 @@ from fakesss.renderer import PICTURE, Renderer, shared_renderer
 from fakesss.scene import Scene
 from fakesss.solidity import is_solid
 
-CONFIDENCE = 0.95
+CONFIDENCE = 0.95  # at least, of a band of six rounds or more
+SEED = 1  # of the orders of rounds
 SLOW = 2.0  # seconds of a picture
 BAKES_KEPT = 64  # every level of a few baked knobs, so that no picture waits for the disk
 Key = TypeVar("Key", bound=Hashable)
@@ -32,27 +36,47 @@ Way = Callable[[], object]
 
 @dataclass(frozen=True)
 class Timing:
-    """A time beside the baseline's: ratios and milliseconds, with their 95% band."""
+    """A time beside the baseline's: its ratio in each round, and milliseconds."""
 
-    ratio: float
-    ratio_low: float
-    ratio_high: float
+    ratios: tuple[float, ...]
     baseline_ms: float
+
+    @property
+    def ratio(self) -> float:
+        """The median over rounds."""
+        return statistics.median(self.ratios)
+
+    @property
+    def band(self) -> tuple[float, float]:
+        """Within which the true ratio lies as often as `coverage` says."""
+        return median_band(self.ratios)
 
     @property
     def ms(self) -> float:
         return self.ratio * self.baseline_ms
 
+    @property
+    def each_ms(self) -> tuple[float, ...]:
+        """Milliseconds round by round."""
+        return tuple(ratio * self.baseline_ms for ratio in self.ratios)
+
     def facts(self) -> dict[str, float]:
         """The keys of a point in the `tradeoff` document."""
+        low, high = self.band
         return {
             "ms": self.ms,
-            "ms_low": self.ratio_low * self.baseline_ms,
-            "ms_high": self.ratio_high * self.baseline_ms,
+            "ms_low": low * self.baseline_ms,
+            "ms_high": high * self.baseline_ms,
             "ratio": self.ratio,
-            "ratio_low": self.ratio_low,
-            "ratio_high": self.ratio_high,
+            "ratio_low": low,
+            "ratio_high": high,
+            "coverage": coverage(len(self.ratios)),
         }
+
+
+def load_now() -> float | None:
+    """What else the machine does: processes that run or wait, mean of a minute; None where it does not tell."""
+    return round(os.getloadavg()[0], 1) if hasattr(os, "getloadavg") else None
 
 
 def measuring_renderer() -> Renderer:
@@ -91,29 +115,50 @@ def timed(way: Way) -> float:
 def in_rounds(
     ways: Mapping[Key, Way], baseline: Way, rounds: int, step: Callable[[], object] = lambda: None
 ) -> dict[Key, list[tuple[float, float]]]:
-    """(milliseconds, the baseline's in the same round) of each way, `rounds` of them; `step` is told of each."""
+    """(milliseconds, mean of the baseline's right before and after) of each way, `rounds` of them.
+
+    Each round has an order of its own, the same in every run. `step` is told of each picture.
+    """
     taken: dict[Key, list[tuple[float, float]]] = {key: [] for key in ways}
+    shuffled, order = random.Random(SEED), list(ways)
     for _ in range(rounds):
+        shuffled.shuffle(order)
         before = 1e3 * seconds(baseline)
-        for key, way in ways.items():
-            taken[key].append((1e3 * seconds(way), before))
+        for key in order:
+            one = 1e3 * seconds(ways[key])
+            after = 1e3 * seconds(baseline)
+            taken[key].append((one, (before + after) / 2))
+            before = after
             step()
     return taken
 
 
 def timing(pairs: Sequence[tuple[float, float]], baseline_ms: float) -> Timing:
-    """The median ratio of `pairs` (time, the baseline's) and its band."""
-    ratios = [one / base for one, base in pairs]
-    return Timing(statistics.median(ratios), *median_band(ratios), baseline_ms)
+    """Of `pairs` (time, the baseline's), round by round."""
+    return Timing(tuple(one / base for one, base in pairs), baseline_ms)
+
+
+def faster(one: Sequence[float], other: Sequence[float]) -> bool:
+    """Whether `one` takes less than `other`, told by the band of their ratios in the same rounds."""
+    return median_band([a / b for a, b in zip(one, other, strict=True)])[1] < 1
 
 
 def median_band(values: Sequence[float]) -> tuple[float, float]:
-    """Between which two of `values` the true median lies with 95% confidence; all of them where they are too few.
+    """Between which two of `values` the true median lies with `coverage`; all of them where they are too few."""
+    ordered = sorted(values)
+    first = outside(len(ordered))
+    return ordered[first], ordered[-1 - first]
+
+
+def coverage(rounds: int) -> float:
+    """How often the band of so many rounds holds the true median: 0.5 of two, 0.969 of six, 0.965 of fifteen."""
+    return float(1 - 2 * binom.cdf(outside(rounds), rounds, 0.5))
+
+
+def outside(rounds: int) -> int:
+    """How many values at each end the narrowest band of `CONFIDENCE` leaves out; none where all do not reach it.
 
     The number of values below the median is binomial with p = 1/2 (e.g. Conover, *Practical Nonparametric
     Statistics*, 3rd ed. 1999, section 3.2).
     """
-    ordered = sorted(values)
-    outside = int(binom.ppf((1 - CONFIDENCE) / 2, len(ordered), 0.5))
-    first = max(0, outside - 1)
-    return ordered[first], ordered[-1 - first]
+    return max(0, int(binom.ppf((1 - CONFIDENCE) / 2, rounds, 0.5)) - 1)

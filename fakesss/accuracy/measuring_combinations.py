@@ -1,8 +1,9 @@
 """Combinations of knob levels, measured in one or several scenes; of several, the worst counts.
 
 A combination's time is quoted as any other (`measuring`), its errors are against the exact picture of each scene, and
-`beside` against the picture with every knob at its reference: what the knobs do, without what no knob mends. What is
-baked costs no time in a picture, so baked knobs are not searched: they stay at their recommended levels.
+`from_reference` against the picture with every knob at its reference: what the knobs do, without what no knob mends.
+What is baked costs no time in a picture, so baked knobs are not searched: they stay at their recommended levels. Of
+levels that draw the same picture in every scene, one is searched.
 """
 
 from collections.abc import Callable, Mapping, Sequence
@@ -13,15 +14,14 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from fakesss.accuracy.errors import errors
-from fakesss.accuracy.measuring import Timing, Way, drawn, in_rounds, timing
-from fakesss.accuracy.measuring_knobs import Curve, Rig, error_facts
-from fakesss.accuracy.tradeoff_search import Costs, Effects, Setting, front, pareto_local_search
+from fakesss.accuracy.errors import JUST_NOTICEABLE, errors
+from fakesss.accuracy.measuring import Timing, Way, drawn, faster, in_rounds, timing
+from fakesss.accuracy.measuring_knobs import ERRORS, Curve, Rig, error_facts
+from fakesss.accuracy.tradeoff_search import Costs, Effects, Setting, below, front, pareto_local_search
 from fakesss.knob import Knob, Value
 from fakesss.scene import Scene
 
-ERRORS = ("rmse", "max_abs", "flip", "flip_everywhere")
-LOOKS = 2  # rounds of a combination while searching; what is kept is measured again with as many as a knob
+LOOKS = 3  # rounds of a combination while searching; what is kept is measured again with more
 
 
 @dataclass(frozen=True)
@@ -32,12 +32,21 @@ class Combination:
     settings: Mapping[str, Any]  # by scene path
     timings: tuple[Timing, ...]
     errors: tuple[Mapping[str, float], ...]  # against the exact picture
-    beside: tuple[Mapping[str, float], ...]  # against the picture with every knob at its reference
+    from_reference: tuple[Mapping[str, float], ...]  # against the picture with every knob at its reference
 
     @property
     def worst(self) -> Timing:
         """Of the scene in which it takes longest."""
         return max(self.timings, key=lambda one: one.ms)
+
+    def faster(self, other: "Combination") -> bool:
+        """Whether it can be told to take less time, in the scene where each takes longest in a round."""
+        return faster(self.worst_ms, other.worst_ms)
+
+    @property
+    def worst_ms(self) -> list[float]:
+        """Of each round, in the scene in which it took longest."""
+        return [max(round_) for round_ in zip(*(timing.each_ms for timing in self.timings), strict=True)]
 
     def error(self, name: str) -> float:
         """The largest of any scene."""
@@ -46,7 +55,7 @@ class Combination:
     @property
     def noticed(self) -> float:
         """FLIP from the reference that 99.9% of the pixels do not exceed, in the scene where it is largest."""
-        return max(found["flip_everywhere"] for found in self.beside)
+        return max(found["flip_everywhere"] for found in self.from_reference)
 
     @property
     def costs(self) -> Costs:
@@ -63,7 +72,7 @@ class Combination:
             "settings": dict(self.settings),
             **self.worst.facts(),
             **worst,
-            "beside": {name: max(found[name] for found in self.beside) for name in ERRORS},
+            "from_reference": {name: max(found[name] for found in self.from_reference) for name in ERRORS},
             **several,
         }
 
@@ -81,14 +90,14 @@ class Place:
 
     @cached_property
     def baseline_ms(self) -> float:
-        """Of the picture beside which knobs were measured, over all of that."""
-        return float(np.median([level.timing.baseline_ms for curve in self.curves.values() for level in curve.levels]))
+        """Of the picture beside which knobs were measured, over all of that (`on_one_baseline`)."""
+        return next(iter(self.curves.values())).levels[0].timing.baseline_ms
 
     @cached_property
     def reference(self) -> NDArray[np.float32]:
         """The picture with every knob at its reference."""
-        best = {path: value for curve in self.curves.values() for path, value in curve.knob.reference.changes.items()}
-        return self.rig.picture(best)
+        references = [curve.knob.reference.changes for curve in self.curves.values()]
+        return self.rig.picture({path: value for changes in references for path, value in changes.items()})
 
     def scene(self, settings: Mapping[str, Any]) -> Scene:
         """With what of `settings` is of its knobs."""
@@ -114,7 +123,20 @@ class Combinations:
     @property
     def effects(self) -> Effects:
         """What each level does alone: milliseconds and errors in the scene where they are worst."""
-        return [[self.effect(knob, number) for number in range(len(knob.levels))] for knob in self.searched]
+        return [[self.effect(knob, number) for number in self.distinct[knob.name]] for knob in self.searched]
+
+    @cached_property
+    def distinct(self) -> dict[str, list[int]]:
+        """Places of each searched knob's levels that draw a picture of their own in one of the scenes."""
+        return {knob.name: distinct(self.curves(knob)) for knob in self.searched}
+
+    @property
+    def best(self) -> Setting:
+        """The most exact level of every searched knob."""
+        return tuple(
+            next(rank for rank, place in enumerate(self.distinct[knob.name]) if same(self.curves(knob), place, best))
+            for knob, best in ((knob, knob.best_place) for knob in self.searched)
+        )
 
     def effect(self, knob: Knob, number: int) -> Costs:
         """Of one level of one knob."""
@@ -130,8 +152,14 @@ class Combinations:
 
     def values(self, setting: Setting) -> dict[str, Value]:
         """The level of every knob."""
-        chosen = {knob.name: knob.levels[place].value for knob, place in zip(self.searched, setting, strict=True)}
-        return {knob.name: chosen.get(knob.name) or self.recommended(knob) for knob in self.knobs}
+        places = dict(zip((knob.name for knob in self.searched), setting, strict=True))
+
+        def value(knob: Knob) -> Value:
+            if knob.name not in places:
+                return self.recommended(knob)
+            return knob.levels[self.distinct[knob.name][places[knob.name]]].value
+
+        return {knob.name: value(knob) for knob in self.knobs}
 
     def settings(self, values: Mapping[str, Value]) -> dict[str, Any]:
         """The scene fields that these levels are."""
@@ -139,29 +167,58 @@ class Combinations:
         return {path: value for level in levels for path, value in level.changes.items()}
 
     def search(self, budget: int, step: Callable[[], object]) -> list[dict[str, Value]]:
-        """The values worth measuring well: what nothing else beats, of at most `budget` that were looked at."""
+        """The values worth measuring well: what nothing else beats, of at most `budget` that were looked at.
+
+        Beyond the budget, what is cheaper than the cheapest that is not noticeably off, one step of one knob away.
+        """
 
         def look(setting: Setting) -> Costs:
             found = self.measured([self.values(setting)], LOOKS)[0]
             step()
             return found.costs
 
-        found = pareto_local_search(self.effects, tuple(knob.best for knob in self.searched), look, budget)
+        found = pareto_local_search(self.effects, self.best, look, budget)
+        below(found, self.effects, look, lambda costs: costs[2] < JUST_NOTICEABLE)
         return [self.values(setting) for setting in front(found)]
 
     def measured(self, all_values: Sequence[Mapping[str, Value]], rounds: int) -> list[Combination]:
         """These combinations, in turn with one another and the baseline, scene after scene."""
         settings = [self.settings(values) for values in all_values]
         by_scene = [kept(place, settings, rounds) for place in self.places]
-        times, exact, beside = zip(*by_scene, strict=True)
+        times, exact, from_reference = zip(*by_scene, strict=True)
 
         def of(number: int, found: Sequence[Sequence[Any]]) -> tuple[Any, ...]:
             return tuple(each[number] for each in found)
 
         return [
-            Combination(values, chosen, of(number, times), of(number, exact), of(number, beside))
+            Combination(values, chosen, of(number, times), of(number, exact), of(number, from_reference))
             for number, (values, chosen) in enumerate(zip(all_values, settings, strict=True))
         ]
+
+
+def distinct(curves: Sequence[Curve]) -> list[int]:
+    """Places of the levels of one knob, one of those that draw the same in all scenes."""
+    groups: list[list[int]] = []
+    for place in range(len(curves[0].levels)):
+        alike = next((group for group in groups if same(curves, place, group[0])), None)
+        if alike is None:
+            groups.append([place])
+        else:
+            alike.append(place)
+    return [plainest(curves, group) for group in groups]
+
+
+def plainest(curves: Sequence[Curve], group: Sequence[int]) -> int:
+    """Of levels that draw the same the cheapest; the best of all, unless that can be told to be slower."""
+    cheapest = min(group, key=lambda place: sum(curve.levels[place].timing.ms for curve in curves))
+    best = curves[0].knob.best_place
+    slower = any(curve.levels[cheapest].faster(curve.levels[best]) for curve in curves)
+    return best if best in group and not slower else cheapest
+
+
+def same(curves: Sequence[Curve], one: int, other: int) -> bool:
+    """Whether two levels draw the same pictures."""
+    return all(np.array_equal(curve.levels[one].picture, curve.levels[other].picture) for curve in curves)
 
 
 def kept(
@@ -182,7 +239,7 @@ def kept(
     shapes = {"times": (len(scenes), rounds, 2), "errors": (len(scenes), 2, len(ERRORS))}
     arrays, _ = place.rig.kept(what, shapes, make)
     times = [timing([(one, base) for one, base in each], place.baseline_ms) for each in arrays["times"]]
-    exact, beside = (
+    exact, from_reference = (
         [dict(zip(ERRORS, map(float, row), strict=True)) for row in arrays["errors"][:, which]] for which in (0, 1)
     )
-    return times, exact, beside
+    return times, exact, from_reference

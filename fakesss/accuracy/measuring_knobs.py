@@ -1,12 +1,13 @@
 """One knob at a time: what each level costs and is off by, all other knobs at their best.
 
-Supersampling and screen-space samples multiply every other cost, so while another knob is measured they stay where
-their modules say (`Knob.beside`). A level's error is that of its picture against the picture of the knob's reference,
-so it is this knob's own; `total` is against the exact picture, with what all the other knobs are still off by.
+A few knobs multiply every other cost, or are what pictures are drawn with: while another is measured they stay where
+their modules say (`Knob.beside`), not at their references. A level's error is that of its picture against the picture
+of the knob's reference, so it is this knob's own; `total` is against the exact picture, with what all the other knobs
+are still off by.
 """
 
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
@@ -14,8 +15,8 @@ from numpy.typing import NDArray
 
 from fakesss.accuracy.convergence import fitted_order
 from fakesss.accuracy.errors import JUST_NOTICEABLE, Errors, errors
-from fakesss.accuracy.measuring import Timing, drawn, in_rounds, measuring_renderer, timing
-from fakesss.accuracy.pareto import non_dominated
+from fakesss.accuracy.measuring import Timing, drawn, faster, in_rounds, measuring_renderer, timing
+from fakesss.accuracy.pareto import unbeaten
 from fakesss.accuracy.tradeoff_kept import Kept
 from fakesss.frame_graph import Bake
 from fakesss.inspect import compiled
@@ -26,6 +27,7 @@ from fakesss.scene import Scene
 
 Floats32 = NDArray[np.float32]
 FEWEST = 3  # points that an order is fitted to
+ERRORS = ("rmse", "max_abs", "flip", "flip_everywhere")  # the document's names
 
 
 @dataclass
@@ -52,7 +54,7 @@ class Rig:
 
 
 @dataclass(frozen=True)
-class Level:
+class MeasuredLevel:
     """One level of a knob, measured."""
 
     value: Value
@@ -68,6 +70,17 @@ class Level:
         """Seconds of a bake, milliseconds of anything else."""
         return self.timing.ms if self.bake_seconds is None else self.bake_seconds
 
+    @property
+    def off(self) -> tuple[float, float]:
+        """FLIP from the reference that 99.9% of the pixels do not exceed, and its mean."""
+        return self.errors.flip_everywhere, self.errors.flip
+
+    def faster(self, other: "MeasuredLevel") -> bool:
+        """Whether it can be told to cost less. A bake is measured once: of two the lesser seconds count."""
+        if self.bake_seconds is not None and other.bake_seconds is not None:
+            return self.bake_seconds < other.bake_seconds
+        return faster(self.timing.ratios, other.timing.ratios)
+
     def facts(self) -> dict[str, Any]:
         """A point of the `tradeoff` document."""
         baked = {} if self.bake_seconds is None else {"bake_seconds": self.bake_seconds}
@@ -77,8 +90,7 @@ class Level:
 
 def error_facts(found: Errors) -> dict[str, float]:
     """Errors by the document's names."""
-    names = ("rmse", "max_abs", "flip", "flip_everywhere")
-    return {name: float(getattr(found, name)) for name in names}
+    return {name: float(getattr(found, name)) for name in ERRORS}
 
 
 @dataclass(frozen=True)
@@ -86,7 +98,7 @@ class Curve:
     """A knob's levels, measured."""
 
     knob: Knob
-    levels: tuple[Level, ...]
+    levels: tuple[MeasuredLevel, ...]
     reference: Floats32
 
     @property
@@ -98,22 +110,28 @@ class Curve:
         return float(JUST_NOTICEABLE / 3 if self.knob.baked else JUST_NOTICEABLE)
 
     @property
-    def recommended(self) -> Level:
+    def recommended(self) -> MeasuredLevel:
         """The cheapest whose difference from the reference stays below the limit; the best where none does.
 
-        Of levels whose times cannot be told apart, the one that was declared to be cheaper.
+        Of levels whose times cannot be told apart from the cheapest's, the most exact.
         """
         fine = [level for level in self.levels if level.errors.flip_everywhere < self.limit]
-        best = min(self.levels, key=lambda level: (level.errors.flip_everywhere, level.cost))
-        if not fine:
-            return best
-        cheapest = min(fine, key=lambda level: level.cost)
-        alike = (level for level in fine if level.timing.ratio_low <= cheapest.timing.ratio_high)
-        return cheapest if self.knob.baked else next(alike)
+        return self.most_exact(self.alike(fine) if fine else self.levels)
+
+    def alike(self, levels: Sequence[MeasuredLevel]) -> list[MeasuredLevel]:
+        """The cheapest of them, and what cannot be told to be slower."""
+        cheapest = min(levels, key=lambda level: level.cost)
+        return [level for level in levels if not cheapest.faster(level)]
+
+    def most_exact(self, levels: Sequence[MeasuredLevel]) -> MeasuredLevel:
+        """Of equal pictures the reference's own, else the cheaper."""
+        own = self.knob.reference.value
+        return min(levels, key=lambda level: (*level.off, level.value != own, level.cost))
 
     def facts(self) -> dict[str, Any]:
         """An entry of the document's `knobs`."""
-        front = non_dominated([(level.cost, level.errors.flip) for level in self.levels])
+        levels = self.levels
+        front = unbeaten([(level.errors.flip,) for level in levels], lambda a, b: levels[a].faster(levels[b]))
         return {
             "name": self.knob.name,
             "sets": list(self.knob.paths),
@@ -132,7 +150,7 @@ class Curve:
         """Why that level."""
         limit = f"a FLIP of {self.limit:.3f} in 99.9% of the pixels"
         below = self.recommended.errors.flip_everywhere < self.limit
-        return f"cheapest below {limit}" if below else f"smallest error; none stays below {limit}"
+        return f"the cheapest below {limit}" if below else f"the smallest error; none stays below {limit}"
 
 
 def measured(rig: Rig, knob: Knob) -> Curve:
@@ -144,7 +162,7 @@ def measured(rig: Rig, knob: Knob) -> Curve:
     for place, level in enumerate(knob.levels):
         picture = rig.picture(level.changes)
         made.append(
-            Level(
+            MeasuredLevel(
                 level.value,
                 level.changes,
                 timing([(one, base) for one, base in times[place]], baseline_ms),
@@ -186,15 +204,25 @@ def bake(rig: Rig, knob: Knob, changes: Mapping[str, Any]) -> float:
     return baking_seconds(rig.renderer, scene, nodes)
 
 
-def order(knob: Knob, levels: Sequence[Level]) -> dict[str, float] | None:
+def on_one_baseline(curves: Mapping[str, Curve]) -> dict[str, Curve]:
+    """Milliseconds of all `curves` by the median of their baselines: that picture is the same for every knob."""
+    baseline_ms = float(np.median([level.timing.baseline_ms for curve in curves.values() for level in curve.levels]))
+
+    def timed(level: MeasuredLevel) -> MeasuredLevel:
+        return replace(level, timing=replace(level.timing, baseline_ms=baseline_ms))
+
+    return {name: replace(curve, levels=tuple(map(timed, curve.levels))) for name, curve in curves.items()}
+
+
+def order(knob: Knob, levels: Sequence[MeasuredLevel]) -> dict[str, float] | None:
     """p of an RMSE that falls as value^-p, by least squares of the logarithms; None where the levels are no numbers.
 
-    Levels from half of the reference on are left out: what the reference itself is off by shows in them.
+    Half of the reference and what is beyond is left out: what the reference itself is off by shows there.
     """
     if knob.order is None:
         return None
     known = [(int(level.value), level.errors.rmse) for level in levels if level.errors.rmse > 0]
-    points = [point for point in known if 2 * point[0] <= int(knob.reference.value)]
+    points = [point for point in known if 2 * point[0] < int(knob.reference.value)]
     if len(points) < FEWEST:
         return None
     counts, left = zip(*points, strict=True)

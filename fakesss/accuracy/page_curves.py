@@ -1,13 +1,13 @@
 """A knob or combination of `fakesss tradeoff`'s document as its page needs it: its time with a band, its errors."""
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
 
 @dataclass(frozen=True)
 class Point:
-    """One level of a knob or one combination: what it costs, in which band (95 %), and how far off it is."""
+    """One level of a knob or one combination: what it costs, in which band, and how far off it is."""
 
     text: str  # its value
     number: float | None  # None: a kind, which has no number
@@ -18,6 +18,7 @@ class Point:
     max_abs: float
     flip: float  # mean over the object
     flip_everywhere: float | None  # not exceeded in 99.9 % of its pixels
+    coverage: float | None = None  # how often such a band holds the true median, 0..1
 
 
 @dataclass(frozen=True)
@@ -53,6 +54,12 @@ def curve_of(knob: Mapping[str, Any]) -> Curve:
     )
 
 
+def band_name(points: Sequence[Point]) -> str:
+    """With how often it holds the true median, where that is known: 96.5 % band."""
+    found = {f"{100 * point.coverage:.1f} %" for point in points if point.coverage is not None}
+    return " ".join([*sorted(found)[:1], "band"])
+
+
 def point_of(entry: Mapping[str, Any], text: str, baked: bool = False) -> Point:
     """One of a knob's `points`, or one of `combinations` under a name of its own."""
     value = entry.get("value")
@@ -66,4 +73,5 @@ def point_of(entry: Mapping[str, Any], text: str, baked: bool = False) -> Point:
         max_abs=float(entry["max_abs"]),
         flip=float(entry["flip"]),
         flip_everywhere=entry.get("flip_everywhere"),
+        coverage=None if baked else entry.get("coverage"),
     )

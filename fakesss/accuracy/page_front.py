@@ -30,7 +30,8 @@ def front_of(document: Mapping[str, Any]) -> Front | None:
     best = [place for place, entry in enumerate(entries) if entry["front"]]
     return Front(
         f"All knobs at once, against the exact picture: the {len(entries)} combinations that were measured well. No "
-        "other that was looked at is both faster and nearer to it than those on the line.",
+        "other that was looked at is both faster, as far as that can be told, and nearer to it in mean FLIP than those "
+        "on the line.",
         front_drawing(points, best),
         combinations_table(document["presets"]["reference"]["values"], entries, marks, points),
     )

@@ -3,7 +3,7 @@
 from collections.abc import Mapping, Sequence
 from typing import Any
 
-from fakesss.accuracy.page_curves import Curve, Point, curve_of
+from fakesss.accuracy.page_curves import Curve, Point, band_name, curve_of
 from fakesss.accuracy.page_numbers import rounded
 from fakesss.accuracy.page_parts import Table
 
@@ -30,7 +30,7 @@ def overview(document: Mapping[str, Any]) -> Table:
 def points_table(curve: Curve, anchor: str) -> Table:
     """Every level of a knob."""
     texts = [point.text for point in curve.points]
-    times = ["bake, s"] if curve.baked else ["time, ms", "95 % band"]
+    times = ["bake, s"] if curve.baked else ["time, ms", band_name(curve.points)]
     rows = [
         [f"{point.text} (reference)" if point.text == curve.reference else point.text, rounded(point.cost),
          *([] if curve.baked else [band_text(point)]), *errors_text(point)]
@@ -49,7 +49,7 @@ def published_table(curve: Curve, published: Mapping[str, Any], anchor: str) -> 
     offline = {str(each["value"]): rounded(each["offline_s"]) for each in published["points"]}
     first = next(value for value in theirs if value in ours)
     rows = [
-        [value, *beside(ours.get(value), ours[first]), *beside(theirs[value], theirs[first]), offline[value]]
+        [value, *multiple(ours.get(value), ours[first]), *multiple(theirs[value], theirs[first]), offline[value]]
         for value in theirs
     ]
     head = [curve.name, "ours, ms", f"ours / at {first}", "published, ms", f"published / at {first}", "offline, s"]
@@ -59,7 +59,7 @@ def published_table(curve: Curve, published: Mapping[str, Any], anchor: str) -> 
     )  # fmt: skip
 
 
-def beside(time: float | None, first: float) -> tuple[str, str]:
+def multiple(time: float | None, first: float) -> tuple[str, str]:
     """A time, and how many times the first it is; nothing of a level that was not measured."""
     return ("", "") if time is None else (rounded(time), rounded(time / first, 2))
 
@@ -71,7 +71,7 @@ def errors_text(point: Point) -> list[str]:
 
 
 def band_text(point: Point) -> str:
-    """The 95 % band of a time."""
+    """The band of a time."""
     return f"{rounded(point.low)}–{rounded(point.high)}" if point.low and point.high else ""
 
 
@@ -99,7 +99,7 @@ def combinations_table(
     ]  # fmt: skip
     return Table(
         "table-combinations", "Combinations that were measured well, by rising time",
-        ["time, ms", "95 % band", *ERRORS, "preset", "other than the preset reference"], rows,
+        ["time, ms", band_name(points), *ERRORS, "preset", "other than the preset reference"], rows,
         note="Errors are against the exact picture: all that every knob is off by.",
     )  # fmt: skip
 

@@ -1,7 +1,7 @@
 """Which of several things nothing else beats: Pareto's front, and how far a point lies before or behind it."""
 
 import math
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 
 Costs = Sequence[float]  # each the less the better
 
@@ -16,6 +16,21 @@ def non_dominated(points: Sequence[Costs]) -> list[int]:
     """Places of the points that no other dominates, by rising first cost. Of equal points all are kept."""
     kept = [place for place, point in enumerate(points) if not any(dominates(other, point) for other in points)]
     return sorted(kept, key=lambda place: tuple(points[place]))
+
+
+def unbeaten(errors: Sequence[Costs], faster: Callable[[int, int], bool]) -> list[int]:
+    """Places of what no other beats: as good in every error and not slower, in something better.
+
+    `faster(one, other)` says whether one place can be told to take less time than another; neither: alike.
+    """
+
+    def beats(one: int, other: int) -> bool:
+        if faster(other, one) or any(a > b for a, b in zip(errors[one], errors[other], strict=True)):
+            return False
+        return faster(one, other) or tuple(errors[one]) != tuple(errors[other])
+
+    places = range(len(errors))
+    return [place for place in places if not any(beats(other, place) for other in places)]
 
 
 def gain(point: Costs, front: Sequence[Costs]) -> float:

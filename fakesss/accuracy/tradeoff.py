@@ -9,16 +9,16 @@ Several scenes are searched together: a combination then counts as it does where
 """
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from dataclasses import astuple, dataclass
 from typing import Any
 
-import numpy as np
 from tqdm import tqdm
 
-from fakesss.accuracy.errors import errors
+from fakesss.accuracy.errors import check_flip
 from fakesss.accuracy.exact import exact_picture
+from fakesss.accuracy.measuring import load_now
 from fakesss.accuracy.measuring_combinations import Combination, Combinations, Place
-from fakesss.accuracy.measuring_knobs import Rig, measured
+from fakesss.accuracy.measuring_knobs import Rig, measured, on_one_baseline
 from fakesss.accuracy.presets import BUDGET_MS, Preset, chosen
 from fakesss.accuracy.tradeoff_kept import Kept
 from fakesss.gpu import renderer_facts
@@ -29,15 +29,15 @@ from fakesss.scene import Scene
 
 @dataclass(frozen=True)
 class Effort:
-    """How often each picture is timed, and how many combinations are looked at."""
+    """How often pictures are timed, and how many combinations are looked at."""
 
-    rounds: int
+    rounds: int  # of a knob's levels
     combinations: int
+    again: int  # rounds of the combinations that are worth it
 
 
-BLANK = np.ones((8, 8, 4), np.float32)
-THOROUGH = Effort(rounds=9, combinations=60)
-QUICK = Effort(rounds=3, combinations=16)
+THOROUGH = Effort(rounds=15, combinations=60, again=9)
+QUICK = Effort(rounds=6, combinations=16, again=6)
 
 
 @dataclass(frozen=True)
@@ -52,6 +52,8 @@ class Found:
     presets: dict[str, Preset]
     effort: Effort
     budget_ms: float
+    load: float | None  # of the machine when it began
+    kept: Kept  # to be forgotten once all is written
 
 
 def tradeoff(
@@ -61,7 +63,10 @@ def tradeoff(
     budget_ms: float = BUDGET_MS,
     quiet: bool | None = None,
 ) -> Found:
-    """Measure the knobs `names` (all, where none is named) in `scenes`. An interrupted run continues.
+    """Measure the knobs `names` (all, where none is named) in `scenes`.
+
+    An interrupted run continues, and so does one whose results were not written: what is measured stays until
+    `kept.forget()` is called of what this returns.
 
     `quiet` hides the progress bar; None shows it on a terminal. Raises `BadInput` for an unknown knob, one that no
     scene uses, and a scene that shows nothing.
@@ -70,19 +75,19 @@ def tradeoff(
     asked = named(names)
     used = [tuple(knob for knob in asked if not knob.unused(scene)) for scene in scenes]
     check(scenes, asked, used)
-    errors(BLANK, BLANK)  # says at once, not after minutes, if FLIP is not installed
+    check_flip()
     truths = [exact_picture(scene) for scene in scenes]
-    kept = Kept({**renderer_facts(), "knobs": names, "effort": [effort.rounds, effort.combinations]})
+    load = load_now()
+    kept = Kept({**renderer_facts(), "knobs": names, "effort": astuple(effort)})
     with tqdm(total=steps(used, effort), desc="tradeoff", unit="picture", disable=True if quiet else None) as bar:
         places = []
         for scene, own, exact in zip(scenes, used, truths, strict=True):
             rig = Rig.of(scene, own, exact, effort.rounds, kept, bar.update)
-            places.append(Place(rig, {knob.name: measured(rig, knob) for knob in own}))
+            places.append(Place(rig, on_one_baseline({knob.name: measured(rig, knob) for knob in own})))
         found = Combinations(tuple(places), tuple(knob for knob in asked if any(knob in own for own in used)))
-        best, reference = searched(found, effort, bar.update)
-    kept.forget()
-    presets = chosen(best, reference, budget_ms)
-    return Found(scenes, tuple(places), asked, found, tuple(best), presets, effort, budget_ms)
+        good, reference = searched(found, effort, bar.update)
+    presets = chosen(good, reference, budget_ms)
+    return Found(scenes, tuple(places), asked, found, tuple(good), presets, effort, budget_ms, load, kept)
 
 
 def named(names: Sequence[str]) -> tuple[Knob, ...]:
@@ -112,7 +117,7 @@ def searched(found: Combinations, effort: Effort, step: Callable[[], object]) ->
     """The combinations that are worth their time, measured well, and the best of every knob."""
     good = found.search(effort.combinations, step)
     best = {knob.name: knob.reference.value for knob in found.knobs}
-    measured = found.measured([*(values for values in good if values != best), best], effort.rounds)
+    measured = found.measured([*(values for values in good if values != best), best], effort.again)
     reference = measured[-1]
     return sorted(measured, key=lambda one: one.worst.ms), reference
 

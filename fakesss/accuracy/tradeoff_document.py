@@ -7,31 +7,36 @@ Of each scene:
      "knobs": [{"name", "sets": [paths], "reference": value, "error": words, "baked": bool,
                 "order": {"fitted", "low", "high", "expected"} | null,
                 "points": [{"value", "settings": {path: value}, "ms", "ms_low", "ms_high", "ratio", "ratio_low",
-                            "ratio_high", "bake_seconds" (baked knobs), "rmse", "max_abs", "flip", "flip_everywhere",
+                            "ratio_high", "coverage", "bake_seconds" (baked knobs), the four errors "rmse", "max_abs",
+                            "flip", "flip_everywhere",
                             "total": {the four errors, against the exact picture}}],
                 "pareto": [values], "recommended": value, "because": words,
                 "published": {"source", "points": [{"value", "ms", "offline_s"}]} (where a seed printed a table)}],
      "unused": [{"name", "because"}],
      "combinations": [{"values": {knob: value}, "settings": {path: value}, times, errors, "front": bool,
-                       "beside": {the four errors, against the picture with every knob at its reference}}],
+                       "from_reference": {the four errors, against the picture with every knob at its reference}}],
      "presets": {"interactive" | "survey" | "reference": {a combination's keys, "because", "met": bool}}}
 
-Errors of combinations and presets are against the exact picture.
+Errors of combinations and presets are against the exact picture. The band from `ms_low` to `ms_high` holds the true
+median as often as `coverage` says, 0 to 1.
 """
 
 import csv
 import datetime
 import io
-import os
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import replace
 from typing import Any
 
 from fakesss.accuracy.errors import JUST_NOTICEABLE, PIXELS_PER_DEGREE
-from fakesss.accuracy.measuring_combinations import Combination
-from fakesss.accuracy.pareto import non_dominated
-from fakesss.accuracy.tradeoff import Found
+from fakesss.accuracy.measuring import coverage, load_now
+from fakesss.accuracy.measuring_combinations import LOOKS, Combination
+from fakesss.accuracy.measuring_knobs import ERRORS
+from fakesss.accuracy.pareto import unbeaten
+from fakesss.accuracy.tradeoff import Effort, Found
+from fakesss.accuracy.tradeoff_search import ALIKE
 from fakesss.bench import machine
+from fakesss.knob import Knob
 
 PUBLISHED = {
     "screen-space samples": {
@@ -43,7 +48,6 @@ PUBLISHED = {
     }
 }
 COLUMNS = ("ms", "ms_low", "ms_high", "ratio", "ratio_low", "ratio_high", "bake_seconds")
-ERRORS = ("rmse", "max_abs", "flip", "flip_everywhere")
 
 
 def documents(found: Found, names: Sequence[str], command: str) -> list[dict[str, Any]]:
@@ -55,11 +59,11 @@ def document(found: Found, number: int, name: str, command: str) -> dict[str, An
     """Of one scene."""
     place, scene = found.places[number], found.scenes[number]
     here = [alone(one, number) for one in found.measured]
-    best = set(non_dominated([one.costs[:2] for one in here]))
+    best = set(unbeaten([(one.error("flip"),) for one in here], lambda a, b: here[a].faster(here[b])))
     return {
         "scene": name,
         "fields": scene.model_dump(mode="json"),
-        **measured_by(command),
+        **measured_by(command, found.load),
         "method": method(found),
         "warnings": warnings(found),
         "just_noticeable": JUST_NOTICEABLE,
@@ -85,15 +89,16 @@ def alone(combination: Combination, number: int) -> Combination:
         combination,
         timings=(combination.timings[number],),
         errors=(combination.errors[number],),
-        beside=(combination.beside[number],),
+        from_reference=(combination.from_reference[number],),
     )
 
 
-def measured_by(command: str) -> dict[str, Any]:
-    """On what, when, and how to do it again."""
-    load = {"load": round(os.getloadavg()[0], 1)} if hasattr(os, "getloadavg") else {}
+def measured_by(command: str, load: float | None = None) -> dict[str, Any]:
+    """On what, under which `load` (that of now, where none is given), when, and how to do it again."""
+    load = load_now() if load is None else load
+    under = {} if load is None else {"load": load}
     today = datetime.datetime.now(datetime.UTC).date().isoformat()
-    return {"machine": {**machine(), **load}, "date": today, "command": command}
+    return {"machine": {**machine(), **under}, "date": today, "command": command}
 
 
 def changed(scene: Any, other: Any) -> dict[str, Any]:
@@ -114,12 +119,8 @@ def flat(data: Mapping[str, Any], prefix: str = "") -> Iterator[tuple[str, Any]]
 def method(found: Found) -> list[str]:
     """What the numbers are."""
     return [
-        f"A picture's time is that of processor and GPU until it is finished, not read back. Each level and a fixed "
-        f"baseline are drawn in turn, {found.effort.rounds} rounds in one run; the ratio to the baseline is the "
-        "median over rounds, its band holds the true median with 95% confidence, and milliseconds are the ratio times "
-        "the baseline's median.",
-        "While one knob is measured the others are at their reference, except supersampling and screen-space samples, "
-        "which multiply all other costs and stay at 3 and 64.",
+        *times_of(found.effort),
+        others_of(found.combinations.knobs),
         "A knob's own error is the difference from the same picture with the knob at its reference; errors of "
         "combinations and presets, and `total`, are against the exact picture: sight, thickness, softening, occlusion "
         "and shadows by rays, 8 x 8 samples a pixel.",
@@ -128,10 +129,32 @@ def method(found: Found) -> list[str]:
         '"everywhere" means in 99.9% of the covered pixels.',
         "What is baked is told in seconds without any cache; in a picture it costs nothing, so its recommended level "
         "stays below a third of the just noticeable FLIP, and leaves room to what does cost.",
-        f"Combinations: Pareto local search, at most {found.effort.combinations} looked at; what nothing beats was "
-        "measured again in turn. Baked knobs stay at their recommended level. `beside` is against the picture with "
-        "every knob at its reference, which the preset survey is held to: what no knob mends, it need not mend.",
+        f"Combinations: Pareto local search, {found.effort.combinations} looked at, and what is cheaper than the "
+        f"cheapest that is not noticeably off; in {LOOKS} rounds, so times within {ALIKE - 1:.0%} of each other count "
+        "as equal. What nothing beats was measured again in turn. Baked knobs stay at their recommended level. "
+        "`from_reference` is against the picture with every knob at its reference, which the preset survey is held to: "
+        "what no knob mends, it need not mend.",
     ]
+
+
+def times_of(effort: Effort) -> list[str]:
+    """How times were measured, and how sure they are."""
+    return [
+        "A picture's time is that of processor and GPU until it is finished, not read back. In each round every level "
+        "is drawn once, in an order of the round's own, between two pictures of a fixed baseline; what counts is the "
+        "ratio to their mean, its median over rounds, and milliseconds are that times the baseline's median.",
+        f"Levels of a knob were drawn in {effort.rounds} rounds, so that bands hold the true median in "
+        f"{coverage(effort.rounds):.1%} of all cases; combinations in {effort.again}, {coverage(effort.again):.1%}. "
+        "Two times count as different if such a band of their ratios, round by round, excludes 1; else the smaller "
+        "error decides.",
+    ]
+
+
+def others_of(knobs: Sequence[Knob]) -> str:
+    """Where the others stand while one knob is measured."""
+    elsewhere = [f"{knob.name} ({knob.beside})" for knob in knobs if knob.beside is not None]
+    rest = f", except {' and '.join([', '.join(elsewhere[:-1])] * (len(elsewhere) > 1) + elsewhere[-1:])}"
+    return f"While one knob is measured the others are at their references{rest if elsewhere else ''}."
 
 
 def warnings(found: Found) -> list[str]:
@@ -140,7 +163,10 @@ def warnings(found: Found) -> list[str]:
 
 
 def as_csv(document: Mapping[str, Any]) -> str:
-    """One row a level: knob, value, reference, times, its own errors and the total ones."""
+    """One row a level and a preset: knob, value, reference, times, errors against that reference and the total ones.
+
+    The reference of a preset is the picture of the preset `reference`; total errors are against the exact picture.
+    """
     out = io.StringIO()
     writer = csv.writer(out, lineterminator="\n")
     writer.writerow(["knob", "value", "reference", *COLUMNS, *ERRORS, *(f"total_{name}" for name in ERRORS)])
@@ -149,6 +175,9 @@ def as_csv(document: Mapping[str, Any]) -> str:
             numbers = [*(point.get(name, "") for name in COLUMNS), *(point[name] for name in ERRORS)]
             total = [point["total"][name] for name in ERRORS]
             writer.writerow([knob["name"], point["value"], knob["reference"], *numbers, *total])
+    for name, preset in document["presets"].items():
+        numbers = [*(preset.get(column, "") for column in COLUMNS), *preset["from_reference"].values()]
+        writer.writerow(["preset", name, "reference", *numbers, *(preset[error] for error in ERRORS)])
     return out.getvalue()
 
 
@@ -162,7 +191,8 @@ def knob_lines(knob: Mapping[str, Any]) -> Iterator[str]:
     order = f", order {knob['order']['fitted']:.2f}" if knob["order"] else ""
     yield f"{knob['name'].upper()}  against {knob['reference']}{order}; recommended: {knob['recommended']}"
     cost = "bake s" if knob["baked"] else "ms"
-    yield f"  {'':12}{cost:>10}{'ratio':>8}{'95% band':>16}{'RMSE':>10}{'largest':>9}{'FLIP':>9}{'everywhere':>12}"
+    band = f"{knob['points'][0]['coverage']:.1%} band"  # how often it holds the true median
+    yield f"  {'':12}{cost:>10}{'ratio':>8}{band:>16}{'RMSE':>10}{'largest':>9}{'FLIP':>9}{'everywhere':>12}"
     for point in knob["points"]:
         time = point["bake_seconds"] if knob["baked"] else point["ms"]
         band = f"{point['ratio_low']:.2f} to {point['ratio_high']:.2f}"
@@ -175,6 +205,7 @@ def knob_lines(knob: Mapping[str, Any]) -> Iterator[str]:
 def preset_lines(document: Mapping[str, Any]) -> Iterator[str]:
     """The presets' settings, and what they are."""
     for name, preset in document["presets"].items():
-        figures = f"{preset['ms']:.1f} ms, FLIP {preset['flip']:.4f}, everywhere {preset['flip_everywhere']:.3f}"
-        yield f"{name.upper()}  {figures}: {preset['because']}"
+        yield f"{name.upper()}  {preset['ms']:.1f} ms: {preset['because']}"
+        for what, found in (("exact picture", preset), ("reference preset", preset["from_reference"])):
+            yield f"  from the {what}: FLIP {found['flip']:.4f}, everywhere {found['flip_everywhere']:.3f}"
         yield "  " + ", ".join(f"{knob} {value}" for knob, value in preset["values"].items())

@@ -1,4 +1,4 @@
-"""Measurements kept while a run lasts: an interrupted one continues, a finished one is forgotten and measured anew."""
+"""Measurements kept until a run has written its results: an interrupted one continues, a finished one starts anew."""
 
 import hashlib
 from collections.abc import Callable
@@ -9,7 +9,7 @@ from typing import Any
 import fakesss
 from fakesss import cache
 
-VERSION = 2  # raised whenever entries mean something else
+VERSION = 3  # raised whenever entries mean something else
 KIND = "tradeoff"
 
 
@@ -29,7 +29,7 @@ class Kept:
         return cache.cached(KIND, key, shapes, make)
 
     def forget(self) -> None:
-        """Called at the end: the next run of the same kind shall measure, not repeat."""
+        """Called when all is written: the next run of the same kind shall measure, not repeat."""
         for path in self.entries:
             path.unlink(missing_ok=True)
 

@@ -4,7 +4,7 @@ from collections.abc import Mapping
 from typing import Any
 
 from fakesss.frame_graph import Bake
-from fakesss.knob import Knob, Level, culled, levels
+from fakesss.knob import Knob, Level, culled, levels, spread_order
 from fakesss.scene import Scene
 
 KNOBS = (
@@ -14,7 +14,7 @@ KNOBS = (
         reference=Level(16384, {"layers.rays": 16384}),
         error="the mean way to the other side, another at each vertex",
         unused=culled("local_thickness"),
-        order=0.5,
+        order=spread_order(2),  # directions
         baked="local_thickness",
     ),
 )

@@ -4,7 +4,7 @@ from collections.abc import Mapping
 from typing import Any
 
 from fakesss.frame_graph import Bake
-from fakesss.knob import Knob, Level, culled, levels
+from fakesss.knob import Knob, Level, culled, levels, spread_order
 from fakesss.scene import Scene
 
 KNOBS = (
@@ -14,7 +14,7 @@ KNOBS = (
         reference=Level(16384, {"occlusion.rays": 16384}),
         error="the share of rays that hit nothing, another at each vertex",
         unused=culled("occlusion"),
-        order=0.5,
+        order=spread_order(2),  # directions
         baked="occlusion",
     ),
 )

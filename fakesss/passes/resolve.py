@@ -3,7 +3,7 @@
 from fakesss.calls import Setting
 from fakesss.frame import Frame
 from fakesss.frame_graph import Choice, Pass, TextureSpec
-from fakesss.knob import Knob, culled, levels
+from fakesss.knob import Knob, culled, levels, spread_order
 
 SAMPLES = levels("supersampling", (1, 2, 3, 4, 6, 8))
 KNOBS = (
@@ -13,7 +13,7 @@ KNOBS = (
         reference=SAMPLES[-1],
         error="the share of a pixel that each thing covers: edges, and grain of what is turned from pixel to pixel",
         unused=culled("shade"),
-        order=1.0,
+        order=2 * spread_order(2),  # value x value samples in a pixel
         beside=3,  # it multiplies every other cost
     ),
 )

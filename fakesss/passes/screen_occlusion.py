@@ -7,7 +7,7 @@ that are hidden or outside the picture block nothing, and it changes as the came
 from fakesss.calls import Setting
 from fakesss.frame import Frame
 from fakesss.frame_graph import Pass, TextureSpec
-from fakesss.knob import Knob, culled, levels
+from fakesss.knob import Knob, culled, levels, spread_order
 from fakesss.screen_occlusion import POINTS
 
 SAMPLES = levels("occlusion.samples", (16, 32, 64, 128, 256))
@@ -18,7 +18,7 @@ KNOBS = (
         reference=SAMPLES[-1],
         error="the share of directions that the front layer blocks; what the camera does not see is no part of it",
         unused=culled("sample_occlusion"),
-        order=0.5,
+        order=spread_order(3),  # directions and distances
         beside=64,
     ),
 )

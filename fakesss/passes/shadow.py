@@ -6,7 +6,7 @@ from typing import Any
 from fakesss.calls import Setting, shining
 from fakesss.frame import Frame
 from fakesss.frame_graph import Pass, TextureSpec
-from fakesss.knob import Knob, culled, first_of, levels
+from fakesss.knob import Knob, culled, first_of, levels, spread_order
 from fakesss.lights import Light
 from fakesss.passes.geometry import Cull, draw_mesh
 from fakesss.passes.lights import array
@@ -23,7 +23,7 @@ KNOBS = (
         reference=MAPS[-1],
         error="where a shadow's edge runs, by parts of a texel",
         unused=culled("shadow"),
-        order=1.0,
+        order=1.0,  # an edge is off by parts of a texel
     ),
     Knob(
         name="shadow filter",
@@ -38,7 +38,7 @@ KNOBS = (
         reference=TAPS[-1],
         error="grain in the penumbra",
         unused=first_of(culled("shadow"), lambda scene: other_filter(scene, disc=True)),
-        order=0.5,
+        order=spread_order(2),  # places on the disc
     ),
 )
 

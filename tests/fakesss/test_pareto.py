@@ -7,8 +7,18 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from fakesss.accuracy.pareto import dominates, gain, non_dominated
-from fakesss.accuracy.tradeoff_search import Costs, Setting, downhill, front, pareto_local_search, predicted, spread
+from fakesss.accuracy.pareto import dominates, gain, non_dominated, unbeaten
+from fakesss.accuracy.tradeoff_search import (
+    Costs,
+    Setting,
+    below,
+    cheaper,
+    downhill,
+    front,
+    pareto_local_search,
+    predicted,
+    spread,
+)  # fmt: skip
 
 POINTS = st.lists(st.tuples(st.integers(0, 6), st.integers(0, 6)), max_size=30)
 
@@ -87,6 +97,56 @@ def test_the_search_keeps_to_its_budget_and_looks_at_both_ends(budget: int) -> N
     found = pareto_local_search(ALONE, BEST, separable, budget)
     assert len(found) <= budget
     assert {BEST, (0, 0, 0, 0)} <= set(found)
+
+
+def test_times_that_are_nearly_equal_do_not_save() -> None:
+    """What costs error for less than 3% of time is neither on the way down nor on the front."""
+    effects = (((0.98, 0.5), (1.0, 0.0)), ((0.5, 0.1), (1.0, 0.0)))
+    assert downhill(effects, (1, 1)) == [(1, 1), (1, 0)]
+    assert front({(1, 1): (1.0, 0.0), (0, 1): (0.98, 0.5), (1, 0): (0.5, 0.1)}) == [(1, 0), (1, 1)]
+
+
+def test_what_no_step_of_a_level_reaches_is_reached_past_it() -> None:
+    """A level that saves nothing, between two that do, is no wall."""
+    effects = (((1.0, 0.5), (2.1, 0.2), (2.0, 0.1), (3.0, 0.0)),)
+    assert downhill(effects, (3,)) == [(3,), (2,), (0,)]
+
+
+def test_before_the_end_what_is_cheaper_than_the_chosen_is_looked_at() -> None:
+    found = {BEST: separable(BEST)}
+    looked: list[Setting] = []
+
+    def look(setting: Setting) -> Costs:
+        looked.append(setting)
+        return separable(setting)
+
+    below(found, ALONE, look, lambda costs: costs[2] < 0.35)
+    allowed = [costs for costs in EVERYTHING.values() if costs[2] < 0.35]
+    here = min((setting for setting in found if found[setting][2] < 0.35), key=lambda setting: found[setting])
+    assert all(found[other][2] >= 0.35 for other in cheaper(here, ALONE))
+    assert found[here][0] < 1.2 * min(allowed)[0]
+    assert len(looked) == len(set(looked)) < len(EVERYTHING)
+
+
+def test_where_nothing_is_fine_nothing_more_is_looked_at() -> None:
+    found = {BEST: separable(BEST)}
+    below(found, ALONE, separable, lambda costs: False)
+    assert set(found) == {BEST}
+
+
+TIMED = st.lists(st.tuples(st.integers(0, 6), st.integers(0, 6), st.integers(0, 6)), max_size=20)
+
+
+@given(TIMED)
+def test_unbeaten_is_the_front_where_all_times_can_be_told(points: list[tuple[int, int, int]]) -> None:
+    kept = unbeaten([point[1:] for point in points], lambda a, b: points[a][0] < points[b][0])
+    assert sorted(kept) == sorted(non_dominated(points))
+
+
+@given(TIMED)
+def test_where_no_times_can_be_told_the_errors_decide(points: list[tuple[int, int, int]]) -> None:
+    kept = unbeaten([point[1:] for point in points], lambda a, b: False)
+    assert sorted(kept) == sorted(non_dominated([point[1:] for point in points]))
 
 
 def test_the_way_down_takes_first_what_costs_least_error_for_its_time() -> None:

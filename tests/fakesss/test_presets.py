@@ -1,9 +1,11 @@
 """Presets: which combination is which, the file that is shipped, and what `quality` makes of it in a scene."""
 
 from collections.abc import Iterator
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
+import numpy as np
 import pytest
 
 from fakesss import quality
@@ -22,7 +24,7 @@ NAMES = ("interactive", "survey", "reference")
 def combination(ms: float, flip: float, everywhere: float, **values: Any) -> Combination:
     found = {"rmse": flip / 10, "max_abs": flip, "flip": flip, "flip_everywhere": everywhere}
     exact = {name: value + 0.2 for name, value in found.items()} | {"flip": flip}  # what no knob mends
-    return Combination(values, {}, (Timing(ms / 10, ms / 11, ms / 9, 10.0),), (exact,), (found,))
+    return Combination(values, {}, (Timing((ms / 11, *(ms / 10,) * 6, ms / 9), 10.0),), (exact,), (found,))
 
 
 FAST, GOOD, FINE, BEST = (
@@ -47,10 +49,17 @@ def test_what_cannot_be_kept_is_said() -> None:
     assert "nothing stays below" in found["survey"].because
 
 
+def test_of_times_that_cannot_be_told_apart_the_nearer_to_the_reference_is_taken() -> None:
+    other = combination(60.5, 0.03, JUST_NOTICEABLE - 0.05)
+    alike = replace(other, timings=(Timing(tuple(np.roll(other.timings[0].ratios, 3)[::-1]), 10.0),))
+    slower = combination(80, 0.001, 0.0)
+    assert chosen([FINE, alike, slower], BEST, 33.0)["survey"].combination == alike
+
+
 def test_of_several_scenes_the_worst_counts() -> None:
     easy, hard = combination(10, 0.01, 0.05), combination(90, 0.05, 0.3)
     both = Combination(
-        {}, {}, (*easy.timings, *hard.timings), (*easy.errors, *hard.errors), (*easy.beside, *hard.beside)
+        {}, {}, (*easy.timings, *hard.timings), (*easy.errors, *hard.errors), easy.from_reference + hard.from_reference
     )
     assert both.worst.ms == pytest.approx(90)
     assert both.costs[1:] == (0.05, 0.3)

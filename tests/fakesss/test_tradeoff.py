@@ -2,9 +2,11 @@
 
 import csv
 import io
-import itertools
 import json
+import math
 import tomllib
+from collections.abc import Callable
+from functools import partial
 from pathlib import Path
 from typing import Any
 
@@ -14,7 +16,7 @@ from scipy.stats import binom
 
 import fakesss.cli_measure  # noqa: F401  (adds its commands)
 from fakesss.accuracy import measuring, measuring_knobs, tradeoff_kept
-from fakesss.accuracy.measuring import in_rounds, median_band, timing
+from fakesss.accuracy.measuring import Timing, coverage, faster, in_rounds, median_band, timing
 from fakesss.accuracy.tradeoff import Effort, Found, pictures, tradeoff
 from fakesss.accuracy.tradeoff_document import as_csv, as_text, documents
 from fakesss.cli import commands
@@ -24,7 +26,7 @@ from fakesss.scene import Scene
 
 SMALL = Scene(object="torus:1000", size=(48, 40)).replace({"light.shadows": True, "occlusion.rays": 16})
 KNOBS = ("supersampling", "shadow filter", "occlusion rays")
-EFFORT = Effort(rounds=3, combinations=5)
+EFFORT = Effort(rounds=3, combinations=5, again=2)
 ERRORS = {"rmse", "max_abs", "flip", "flip_everywhere"}
 
 
@@ -49,31 +51,52 @@ def document(found: Found) -> dict[str, Any]:
 @pytest.mark.parametrize("rounds", [6, 7, 9, 15, 40])
 def test_the_band_holds_the_median_as_often_as_it_says(rounds: int) -> None:
     low, high = median_band(range(1, rounds + 1))
-    coverage = binom.cdf(high - 1, rounds, 0.5) - binom.cdf(low - 1, rounds, 0.5)
+    achieved = binom.cdf(high - 1, rounds, 0.5) - binom.cdf(low - 1, rounds, 0.5)
     narrower = binom.cdf(high - 2, rounds, 0.5) - binom.cdf(low, rounds, 0.5)
-    assert narrower < 0.95 <= coverage
+    assert narrower < 0.95 <= achieved
+    assert coverage(rounds) == pytest.approx(achieved)
 
 
 def test_of_few_rounds_the_band_is_all_of_them() -> None:
     assert median_band([3.0, 1.0, 2.0]) == (1.0, 3.0)
+    assert [coverage(rounds) for rounds in (2, 3, 5)] == [0.5, 0.75, 0.9375]
 
 
-def test_a_drifting_machine_does_not_change_ratios(monkeypatch: pytest.MonkeyPatch) -> None:
-    speed = itertools.count(1)  # each round slower than the last
-    clock = {"now": 0.0, "slow": 1.0}
+@pytest.mark.parametrize("mood", [lambda now: 1 + now, lambda now: 1.5 + math.sin(9 * now)], ids=["tiring", "moody"])
+def test_what_a_machine_does_within_a_round_does_not_tell_equal_levels_apart(
+    monkeypatch: pytest.MonkeyPatch, mood: Callable[[float], float]
+) -> None:
+    """Eight levels that are the same, on a machine that takes between one and five times as long as it goes on."""
+    clock = {"now": 0.0}
 
-    def spend(milliseconds: float) -> None:
-        clock["now"] += milliseconds * clock["slow"] / 1000
-
-    def baseline() -> None:
-        clock["slow"] = float(next(speed))
-        spend(10)
+    def draw() -> None:
+        clock["now"] += 0.01 * mood(clock["now"] % 1.0)
 
     monkeypatch.setattr(measuring.time, "perf_counter", lambda: clock["now"])
-    pairs = in_rounds({"twice": lambda: spend(20)}, baseline, 5)
-    found = timing(pairs["twice"], 10.0)
-    assert (found.ratio_low, found.ratio, found.ratio_high) == pytest.approx((2, 2, 2))
-    assert found.ms == pytest.approx(20)
+    pairs = in_rounds(dict.fromkeys(range(8), draw), draw, 15)
+    found = [timing(each, 10.0) for each in pairs.values()]
+    assert [one.ratio for one in found] == pytest.approx([1.0] * 8, abs=0.03)
+
+
+def test_each_round_has_an_order_of_its_own_and_every_run_the_same() -> None:
+    def run() -> str:
+        drawn: list[str] = []
+        in_rounds({name: partial(drawn.append, name) for name in "abcdef"}, partial(drawn.append, "-"), 4)
+        return "".join(drawn[1::2])  # each is drawn once before it counts
+
+    told = run()
+    rounds = [told[13 * number : 13 * (number + 1)] for number in range(4)]
+    assert all(one[::2] == "-" * 7 and sorted(one[1::2]) == list("abcdef") for one in rounds)
+    assert len({one[1::2] for one in rounds}) > 1
+    assert run() == told
+
+
+def test_what_is_told_apart_is_told_round_by_round() -> None:
+    """Each round is of another speed, so separate bands overlap where the pairs do not."""
+    slow, fast = Timing((1.0, 2.0, 3.0, 4.0, 5.0, 6.0), 1.0), Timing((0.9, 1.8, 2.8, 3.7, 4.6, 5.5), 1.0)
+    assert fast.band[1] > slow.band[0]
+    assert faster(fast.ratios, slow.ratios) and not faster(slow.ratios, fast.ratios)
+    assert not faster((0.9, *slow.ratios[1:5], 6.1), slow.ratios)
 
 
 def test_the_document_has_the_contracts_shape(document: dict[str, Any]) -> None:
@@ -124,11 +147,22 @@ def test_pictures_are_those_of_every_level_and_reference(found: Found) -> None:
 
 def test_the_table_has_one_row_a_level(document: dict[str, Any]) -> None:
     rows = list(csv.DictReader(io.StringIO(as_csv(document))))
-    assert len(rows) == sum(len(knob["points"]) for knob in document["knobs"])
+    assert len(rows) == sum(len(knob["points"]) for knob in document["knobs"]) + 3
     point = document["knobs"][0]["points"][0]
     assert (float(rows[0]["ms"]), float(rows[0]["total_flip"])) == (point["ms"], point["total"]["flip"])
+    survey, preset = rows[-2], document["presets"]["survey"]
+    assert (survey["knob"], survey["value"], survey["reference"]) == ("preset", "survey", "reference")
+    assert float(survey["flip_everywhere"]) == preset["from_reference"]["flip_everywhere"]
+    assert float(survey["total_flip_everywhere"]) == preset["flip_everywhere"]
     text = as_text(document)
+    for what, found in (("exact picture", preset), ("reference preset", preset["from_reference"])):
+        assert f"from the {what}: FLIP {found['flip']:.4f}, everywhere {found['flip_everywhere']:.3f}" in text
     assert all(str(word) in text for word in ("SHADOW FILTER", "pcf", "SURVEY"))
+
+
+def left() -> set[Path]:
+    """What is kept of runs that have not written their results."""
+    return set((Path(tradeoff_kept.cache.folder()) / tradeoff_kept.KIND).glob("*.npz"))
 
 
 def test_an_interrupted_run_continues_and_a_finished_one_is_measured_anew(monkeypatch: pytest.MonkeyPatch) -> None:
@@ -141,15 +175,18 @@ def test_an_interrupted_run_continues_and_a_finished_one_is_measured_anew(monkey
             raise KeyboardInterrupt
         return real(ways, *others)
 
+    before = left()
     monkeypatch.setattr(measuring_knobs, "in_rounds", counted)
     asked = ("shadow filter", "supersampling")
     with pytest.raises(KeyboardInterrupt):
         tradeoff([SMALL], asked, EFFORT, quiet=True)
     tradeoff([SMALL], asked, EFFORT, quiet=True)
     assert [len(ways) for ways in timed] == [2, 6, 6]  # the filter was measured once
-    tradeoff([SMALL], asked, EFFORT, quiet=True)
+    tradeoff([SMALL], asked, EFFORT, quiet=True).kept.forget()
+    assert len(timed) == 3  # nothing was written yet
+    tradeoff([SMALL], asked, EFFORT, quiet=True).kept.forget()
     assert [len(ways) for ways in timed[3:]] == [2, 6]
-    assert not list((Path(tradeoff_kept.cache.folder()) / tradeoff_kept.KIND).glob("*.npz"))
+    assert left() == before
 
 
 def test_an_unknown_knob_names_the_nearest() -> None:
@@ -181,3 +218,40 @@ def test_the_command_writes_page_data_and_presets(tmp_path: Path) -> None:
     worst = max(document["presets"]["reference"]["flip"] for document in told)
     assert written["reference"]["flip"] == pytest.approx(worst, abs=1e-5)
     assert written["reference"]["settings"]["shadow filter"] == {"shadow.filter": "pcf"}
+
+
+def test_nothing_is_lost_where_the_page_cannot_be_written(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """The same command goes on from what was measured: nothing is timed again."""
+    scene = tmp_path / "scene.toml"
+    scene.write_text('object = "torus:1000"\nsize = [48, 40]\nlight.shadows = true\n', encoding="utf-8")
+    arguments = ["tradeoff", str(scene), "--knob", "shadow filter", "--quick", "-o", str(tmp_path / "out")]
+
+    before = left()
+
+    def full(*_: Any) -> None:
+        raise BadInput("index.html: cannot be written (No space left on device)")
+
+    with monkeypatch.context() as patch:
+        patch.setattr("fakesss.accuracy.page.write_page", full)
+        ran = CliRunner().invoke(commands, arguments)
+        assert isinstance(ran.exception, BadInput)
+    assert left() > before
+    with monkeypatch.context() as patch:
+        patch.setattr(measuring_knobs, "in_rounds", None)
+        assert CliRunner().invoke(commands, arguments).exit_code == 0
+    assert left() == before
+
+
+@pytest.mark.parametrize("name", ["index.html", "tradeoff.csv", "tradeoff.json"])
+def test_what_cannot_be_written_is_told_before_measuring(tmp_path: Path, name: str) -> None:
+    (tmp_path / "out" / name).mkdir(parents=True)
+    ran = CliRunner().invoke(commands, ["tradeoff", "torus:1000", "--quick", "-o", str(tmp_path / "out")])
+    assert name in str(ran.exception) + ran.output
+    assert ran.exit_code != 0
+
+
+@pytest.mark.parametrize("budget", ["nan", "inf", "0", "-3"])
+def test_a_budget_is_a_number_of_milliseconds(budget: str) -> None:
+    ran = CliRunner().invoke(commands, ["tradeoff", "torus:1000", "--budget-ms", budget])
+    assert ran.exit_code == 2
+    assert "--budget-ms" in ran.output
