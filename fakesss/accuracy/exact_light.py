@@ -1,22 +1,25 @@
 """What keeps light from a point, by rays: ambient occlusion at vertices and at points, and shadows of lights.
 
-Occlusion at vertices is the bake's own quantity with 16,384 rays, whose error is told in docs/accuracy.md. Shadows
-are hard, since a light has no size, and what a shadow map's filter softens is part of its error; but for the filter
-"disc", which asks for a penumbra: the mean over its disc.
+Occlusion is asked at every sample, not at vertices and interpolated as the bake does; its error is told in
+docs/accuracy.md. Shadows are hard, since a light has no size, and what a shadow map's filter softens is part of its
+error; but for the filter "disc", which asks for a penumbra: the mean over its disc.
 """
 
+import os
 from collections.abc import Iterator
+from concurrent.futures import ThreadPoolExecutor
 
 import numpy as np
 from numpy.typing import NDArray
+from scipy.spatial.transform import Rotation
 
 from fakesss import illumination
 from fakesss.calls import Setting
 from fakesss.camera import View
-from fakesss.hemisphere import mean_over_hemisphere
+from fakesss.hemisphere import even_directions, mean_over_hemisphere, weighed
 from fakesss.lights import Light
 from fakesss.mesh import Mesh
-from fakesss.occlusion import CLEARANCE, bake_occlusion
+from fakesss.occlusion import CLEARANCE
 from fakesss.ray_casting import Caster
 from fakesss.scene import Occlusion
 from fakesss.screen_occlusion import GOLDEN_ANGLE, frame_around
@@ -26,13 +29,8 @@ Floats = NDArray[np.float64]
 Mask = NDArray[np.bool_]
 
 DISC_RAYS = 16  # to a light through a penumbra's disc, turned otherwise in each of a pixel's samples
-BAKE_RAYS = 16_384  # a vertex, of whatever is baked
+RAYS = 16_384  # a pixel, of occlusion; a vertex, of local thickness
 SHADOW_CLEARANCE = 1e-4  # sphere radii, along the normal, from a point to where its rays to the lights start
-
-
-def vertex_occlusion(mesh: Mesh, settings: Occlusion, rays: int = BAKE_RAYS) -> NDArray[np.float32]:
-    """[a] at each vertex (V,) from so many rays, from the cache where it was baked before."""
-    return bake_occlusion(mesh, rays, settings.sampling).values
 
 
 def point_occlusion(caster: Caster, points: Floats, normals: Floats, settings: Occlusion, rays: int = 4096) -> Floats:
@@ -49,6 +47,34 @@ def point_occlusion(caster: Caster, points: Floats, normals: Floats, settings: O
 
     mean, _ = mean_over_hemisphere(origins, axes, rays, settings.sampling, clear, "occlusion of points")
     return np.nan_to_num(mean, nan=1.0)
+
+
+def sample_occlusion(
+    caster: Caster, starts: Floats, normals: Floats, numbers: NDArray[np.int64], settings: Occlusion, rays: int
+) -> Floats:
+    """[a] (M,) of points by `rays` each: within `occlusion.radius` for the screen-space method, else however far.
+
+    Points with one of `numbers` (M,) ask along the same even directions, each number's turned otherwise: with a number
+    for each sample in a pixel, all the rays of a pixel are spread over its hemisphere. `starts` and unit `normals`
+    (M, 3), world frame; rays start 5e-4 radii along the normal, as those of the bake.
+    """
+    farthest = np.float32(2 * settings.radius if settings.method == "screen-space" else np.inf)
+    origins = (starts + CLEARANCE * normals).astype(np.float32)
+    even, mean = even_directions(2 * rays), np.ones(len(starts))
+
+    def clear(start: NDArray[np.float32], along: NDArray[np.float32], reach: NDArray[np.float32]) -> Mask:
+        return caster.clear(start, along, np.minimum(reach, farthest))
+
+    def of_number(number: int) -> None:
+        own = np.flatnonzero(numbers == number)
+        turned = Rotation.from_quat(np.random.default_rng(number).normal(size=4)).apply(even)  # Shoemake 1992
+        axes = np.ascontiguousarray(normals[own].T.astype(np.float32))
+        total, weight, _ = weighed(origins[own], axes, turned.astype(np.float32), settings.sampling, clear)
+        mean[own] = np.divide(total, weight, out=np.ones(len(own)), where=weight > 0)
+
+    with ThreadPoolExecutor(os.cpu_count()) as pool:
+        list(pool.map(of_number, np.unique(numbers)))
+    return mean
 
 
 def onto_smooth_surface(

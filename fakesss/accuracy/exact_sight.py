@@ -15,12 +15,14 @@ from numpy.typing import NDArray
 from fakesss.camera import View
 from fakesss.crossings import MOST, Crossings, Hits, bridged_paths, paths
 from fakesss.mesh import Mesh
-from fakesss.reference import ATTEMPTS, SLIP, camera_rays
+from fakesss.passes.peel import DEEPEST
+from fakesss.reference import ATTEMPTS, SLIP
 from fakesss.scene import Scene
 from fakesss.vertex_normals import normalised
 
 Floats = NDArray[np.float64]
 Mask = NDArray[np.bool_]
+Integers = NDArray[np.int64]
 
 
 @dataclass(frozen=True)
@@ -34,15 +36,9 @@ class Seen:
     faces: NDArray[np.int32]  # (M,) its triangles
     from_behind: Mask  # (M,) whether these are seen from the back
 
-    def only(self, chosen: Mask) -> "Seen":
-        """The same of some of the rays (N,)."""
-        of_hit = chosen[self.hit]
-        layers = self.hit[chosen], self.front[chosen], self.second[chosen]
-        return Seen(*layers, self.points[of_hit], self.faces[of_hit], self.from_behind[of_hit])
-
 
 class Sight:
-    """Rays from a scene's camera through any samples: `Sight(scene, mesh, view, rays)(size, columns, rows)`.
+    """Rays from a scene's camera through any samples: `Sight(scene, mesh, view, rays)(size, rows, columns)`.
 
     `rays` a vertex are baked where `material.thickness` is "local".
     """
@@ -56,12 +52,12 @@ class Sight:
         """Built when the first ray is cast."""
         return Crossings(self.mesh)
 
-    def __call__(self, size: tuple[int, int], columns: range, rows: range) -> Seen:
-        """What is seen through the samples of some columns and rows of a grid of `size` over the picture, row by row.
+    def __call__(self, size: tuple[int, int], rows: Integers, columns: Integers) -> Seen:
+        """What is seen through the cells in these rows and columns (N,) of a grid of `size` over the picture.
 
-        Samples may lie beyond the picture's border.
+        Cells may lie beyond the picture's border.
         """
-        origins, directions = camera_rays(self.view, size, columns, rows)
+        origins, directions = rays_through(self.view, size, rows, columns)
         cosine = -(directions @ self.view.rotation[2])
         # rays start at the near plane: what it cuts away is not there, and a far camera costs no digits
         origins = origins + (self.view.near / cosine)[:, None] * directions
@@ -114,8 +110,7 @@ class Sight:
             return ends
         if self.kind == "total-path":
             return np.where(hit, depths[:, 0] + np.maximum(paths(hits, depths), 0), np.nan)
-        # every surface counts here: that the renderer stops at the sixth is one of its approximations
-        inside = bridged_paths(hits, depths, 2 * self.layers.gap, MOST)
+        inside = bridged_paths(hits, depths, 2 * self.layers.gap, DEEPEST)
         return np.where(hit & (hits.sides[:, 1] != 0), depths[:, 0] + inside, np.nan)
 
     def local(self, faces: NDArray[np.int32], points: Floats) -> Floats:
@@ -129,6 +124,15 @@ class Sight:
 
         values: NDArray[np.float32] = bake_local_thickness(self.mesh, self.rays, self.layers.reach).values
         return values
+
+
+def rays_through(view: View, size: tuple[int, int], rows: Integers, columns: Integers) -> tuple[Floats, Floats]:
+    """Origins and unit directions (N, 3) through the middles of cells, as `reference.camera_rays` of a whole grid."""
+    across = ((columns + 0.5) / size[0] * 2 - 1) * view.tangent[0]
+    up = (1 - (rows + 0.5) / size[1] * 2) * view.tangent[1]
+    right, above, towards = view.rotation
+    directions = across[:, None] * right + up[:, None] * above - towards
+    return np.tile(view.distance * towards, (len(rows), 1)), normalised(directions)
 
 
 def padded(hits: Hits, columns: int) -> Hits:

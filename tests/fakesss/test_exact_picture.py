@@ -7,13 +7,11 @@ import pytest
 from numpy.typing import NDArray
 
 from fakesss.accuracy import exact
-from fakesss.accuracy.exact import Truth, content, exact_picture
-from fakesss.accuracy.exact_light import vertex_occlusion
-from fakesss.occlusion import bake_occlusion
+from fakesss.accuracy.errors import JUST_NOTICEABLE, errors
+from fakesss.accuracy.exact import Truth, content, exact_picture, places
 from fakesss.problem import BadInput
 from fakesss.renderer import Renderer
 from fakesss.scene import Scene, scene_paths
-from fakesss.shapes import load_object
 
 SIZE = (48, 40)
 BEST = {"supersampling": 8, "blur.kernel": "9x9", "shadow.filter": "hard", "shadow.map_size": 4096}
@@ -31,7 +29,6 @@ LIT: dict[str, Any] = {
 # what is left out of the drawn picture, which then must be another one
 TERMS: dict[str, dict[str, Any]] = {
     "ambient": {"material.ambient": 0.0},
-    "ambient occlusion": {"occlusion.enabled": False},
     "diffuse": {"material.diffuse_contribution": 0.0},
     "specular": {"material.specular": 0.0},
     "backlight": {"material.backlight": 0.0},
@@ -42,12 +39,19 @@ TERMS: dict[str, dict[str, Any]] = {
     "exposure": {"exposure": 1.0},
     "background": {"background": (0.2, 0.2, 0.2)},
 }
-RAYS = 256  # a vertex, in both pictures: the error of rays is another test's
+RAYS = 256  # a vertex of local thickness, in both pictures: the error of rays is another test's
 OBJECTS = ["figure:4000", "knot:2000", "shell:2000"]
 
 
 def scene_of(name: str) -> Scene:
-    return Scene(object=name, size=SIZE).replace({**LIT, **BEST, "occlusion.rays": RAYS, "layers.rays": RAYS})
+    """Without occlusion, which is drawn from vertices and exact at samples."""
+    plain = {"occlusion.enabled": False, "layers.rays": RAYS}
+    return Scene(object=name, size=SIZE).replace({**LIT, **BEST, **plain})
+
+
+def at_the_same_samples(scene: Scene) -> NDArray[Any]:
+    """The exact picture, at the renderer's own samples."""
+    return exact_picture(scene, rays=RAYS, spread=False)
 
 
 def differences(picture: NDArray[Any], truth: NDArray[Any]) -> tuple[float, float]:
@@ -60,9 +64,25 @@ def differences(picture: NDArray[Any], truth: NDArray[Any]) -> tuple[float, floa
 @pytest.mark.parametrize("name", OBJECTS)
 def test_what_is_drawn_at_its_best_is_the_exact_picture(renderer: Renderer, name: str) -> None:
     scene = scene_of(name)
-    mean, share = differences(renderer.render(scene).image, exact_picture(scene, rays=RAYS))
+    mean, share = differences(renderer.render(scene).image, at_the_same_samples(scene))
     print(name, mean, share)
     assert mean < 1.5e-3 and share < 0.04  # the pixels at shadows' edges, where a surface may hide itself by the bias
+
+
+@pytest.mark.gl
+@pytest.mark.parametrize("method", ["baked", "screen-space"])
+def test_occlusion_comes_near_that_of_samples(renderer: Renderer, method: str) -> None:
+    """Interpolated from vertices, or within the radius as far as the camera sees: nearer than the other's truth."""
+    ambient = {"material.backlight": 0.0, "material.specular": 0.0, "material.diffuse_contribution": 0.0}
+    few = {"occlusion.method": method, "occlusion.samples": 256, "occlusion.radius": 0.1}
+    scene = Scene(object="figure:4000", size=SIZE).replace({**BEST, **ambient, **few})
+    truth = exact_picture(scene, rays=1024)
+    drawn, _ = differences(renderer.render(scene).image, truth)
+    without, _ = differences(renderer.render(scene.replace({"occlusion.enabled": False})).image, truth)
+    other = {"baked": "screen-space", "screen-space": "baked"}[method]
+    of_other, _ = differences(exact_picture(scene.replace({"occlusion.method": other}), rays=1024), truth)
+    print(drawn, without, of_other)
+    assert drawn < 0.9 * without and drawn < 0.5 * of_other
 
 
 @pytest.mark.gl
@@ -70,7 +90,7 @@ def test_a_penumbra_is_the_discs(renderer: Renderer) -> None:
     """A wide one, which 64 taps of a fine map draw alike; hard shadows are far from it."""
     wide = {"shadow.filter": "disc", "shadow.samples": 64, "shadow.radius": 0.04}
     scene = scene_of("knot:2000").replace({**wide, "blur.enabled": False})
-    truth = exact_picture(scene, rays=RAYS)
+    truth = at_the_same_samples(scene)
     soft, _ = differences(renderer.render(scene).image, truth)
     hard, _ = differences(renderer.render(scene.replace({"shadow.filter": "hard"})).image, truth)
     print(soft, hard)
@@ -80,7 +100,7 @@ def test_a_penumbra_is_the_discs(renderer: Renderer) -> None:
 @pytest.mark.gl
 def test_without_any_of_its_terms_it_is_another_picture(renderer: Renderer) -> None:
     scene = scene_of("figure:4000")
-    truth = exact_picture(scene, rays=RAYS)
+    truth = at_the_same_samples(scene)
     whole, _ = differences(renderer.render(scene).image, truth)
     times = {
         term: differences(renderer.render(scene.replace(change)).image, truth)[0] / whole
@@ -94,18 +114,18 @@ def test_without_any_of_its_terms_it_is_another_picture(renderer: Renderer) -> N
 @pytest.mark.parametrize("kind", ["total-path", "bridged", "local"])
 def test_every_kind_of_thickness(renderer: Renderer, kind: str) -> None:
     scene = scene_of("shell:2000").replace({"material.thickness": kind})
-    mean, share = differences(renderer.render(scene).image, exact_picture(scene, rays=RAYS))
+    mean, share = differences(renderer.render(scene).image, at_the_same_samples(scene))
     assert mean < 1.5e-3 and share < 0.04
 
 
 @pytest.mark.gl
 def test_coverage_and_background_are_those_of_the_drawn_picture(renderer: Renderer) -> None:
     scene = scene_of("knot:2000").replace({"alpha": True})
-    drawn, truth = renderer.render(scene).image, exact_picture(scene, rays=RAYS)
+    drawn, truth = renderer.render(scene).image, at_the_same_samples(scene)
     assert truth.shape == drawn.shape and truth.dtype == np.float32
     assert np.abs(drawn - truth)[..., 3].max() < 0.05
     assert (truth[truth[..., 3] == 0] == 0).all()
-    laid_over = exact_picture(scene.replace({"alpha": False, "background": (0.5, 0.2, 0.1)}), rays=RAYS)
+    laid_over = at_the_same_samples(scene.replace({"alpha": False, "background": (0.5, 0.2, 0.1)}))
     behind = (1 - truth[..., 3:]) * np.array([0.5, 0.2, 0.1])
     np.testing.assert_allclose(laid_over[..., :3], truth[..., :3] + behind, atol=1e-6)
 
@@ -124,11 +144,11 @@ def test_it_goes_on_where_it_was_interrupted(monkeypatch: pytest.MonkeyPatch, tm
     made: list[exact.Part] = []
     stop_after = 4
 
-    def watched(truth: Truth, part: exact.Part) -> Any:
+    def watched(truth: Truth, part: exact.Part, spread: bool) -> Any:
         if len(made) == stop_after:
             raise KeyboardInterrupt
         made.append(part)
-        return original(truth, part)
+        return original(truth, part, spread)
 
     original = exact.picture
     monkeypatch.setattr(exact, "picture", watched)
@@ -149,7 +169,7 @@ SAME = {
     "layers.resolution": 2,
     "layers.depth": "float16",
     "blur.kernel": "3x3",
-    "occlusion.method": "screen-space",
+    "occlusion.radius": 0.1,  # of the other method
     "occlusion.rays": 8,
     "occlusion.samples": 16,
     "shadow.map_size": 64,
@@ -163,11 +183,13 @@ OTHER = {
     "blur.step": 0.01,
     "material.backlight": 0.1,
     "occlusion.sampling": "uniform",
+    "occlusion.method": "screen-space",  # which sees no farther than its radius
+    "blur.enabled": False,  # the softening is part of what is asked; how it is done is not
 }
 
 
 def test_one_truth_for_all_approximations() -> None:
-    scene = scene_of("torus:1000")
+    scene = scene_of("torus:1000").replace({"occlusion.enabled": True})
     key = content(Truth(scene, 2))
     for path, value in SAME.items():
         assert content(Truth(scene.replace({path: value}), 2)) == key, path
@@ -177,21 +199,42 @@ def test_one_truth_for_all_approximations() -> None:
     assert set(SAME) <= set(scene_paths())
 
 
-def test_supersampling_is_a_mean_over_samples() -> None:
-    """The exact picture at n x n samples is the mean of the samples' own pictures, taken at n times the size."""
-    scene = Scene(object="knot:1000", size=(24, 24)).replace({"occlusion.enabled": False, "blur.enabled": False})
-    fine = exact_picture(scene.replace({"size": (72, 72)}), 1)
-    np.testing.assert_allclose(exact_picture(scene, 3), fine.reshape(24, 3, 24, 3, 4).mean(axis=(1, 3)), atol=1e-6)
+@pytest.mark.parametrize(("samples", "finer"), [(8, 8), (8, 3), (4, 5), (1, 1)])
+def test_samples_fill_their_squares_and_few_are_the_renderers(samples: int, finer: int) -> None:
+    rows, columns = places((slice(2, 4), slice(0, 3)), samples, finer, spread=True)
+    squares = np.column_stack([rows // finer, columns // finer])
+    assert len(np.unique(squares, axis=0)) == len(rows) == 6 * samples**2
+    assert squares.min(axis=0).tolist() == [2 * samples, 0]
+    if samples > 1:
+        # of a pixel's samples so many lie in one column of cells, and the renderer's all lie in n columns of n
+        first = columns[(columns < samples * finer) & (rows < 3 * samples * finer)]
+        assert len(np.unique(first)) == min(finer, samples) * samples
+        centres = (rows % finer == finer // 2) & (columns % finer == finer // 2)
+        assert centres.mean() < 0.2
+    centred = places((slice(2, 4), slice(0, 3)), samples, 3, spread=False)
+    assert all((place % 3 == 1).all() for place in centred)
+
+
+def test_its_own_error_is_below_what_is_noticeable() -> None:
+    """Against 16 x 16 samples, which are elsewhere; at the renderer's own places it would be above."""
+    scene = Scene(object="knot:4000", size=(64, 64)).replace({"occlusion.enabled": False})
+    finer = exact_picture(scene, 16)
+    own, at_the_renderers = (errors(exact_picture(scene, spread=one), finer).flip_everywhere for one in (True, False))
+    print(own, at_the_renderers)
+    assert own < JUST_NOTICEABLE < at_the_renderers
+
+
+def test_a_preset_does_not_choose_its_own_truth() -> None:
+    """Whatever a quality fills, also no blur, counts as not set."""
+    asked = Scene(object="torus:1000", size=(24, 24)).replace({"occlusion.enabled": False})
+    truth = exact_picture(asked, 2)
+    without = asked.replace({"blur.enabled": False})
+    assert np.abs(exact_picture(without, 2) - truth).max() > 1e-3
+    low = asked.replace({"quality": "interactive"})
+    object.__setattr__(low, "blur", without.blur)  # as a preset would that leaves the blur out
+    np.testing.assert_array_equal(exact_picture(low, 2), truth)
 
 
 def test_what_shows_flaws_has_no_exact_picture() -> None:
     with pytest.raises(BadInput, match="as published"):
         exact_picture(Scene(style="as published"))
-
-
-def test_occlusion_is_the_bake_with_very_many_rays() -> None:
-    mesh = load_object("torus:1000")
-    found = vertex_occlusion(mesh, Scene().occlusion, 4096)
-    few = bake_occlusion(mesh, 320).values
-    assert 1e-4 < np.abs(found - few).max() < 0.05
-    assert found.shape == (len(mesh.positions),) and 0 < found.min() < 0.9 < found.max() <= 1
