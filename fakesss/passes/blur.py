@@ -20,7 +20,7 @@ KNOBS = (
         reference=SOFTENED[-1],
         error="how soft the second layer's edges are",
         unused=first_of(no_thickness, as_published, culled("blur")),
-        beside="5x5",
+        beside="5x5",  # the default, with which other layers are judged as they are used
     ),
 )
 

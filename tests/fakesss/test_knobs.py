@@ -1,5 +1,7 @@
 """Every pass declares its knobs, or that it approximates nothing: a new one without that fails here."""
 
+from fractions import Fraction
+from pathlib import Path
 from typing import Any
 
 import pytest
@@ -43,6 +45,14 @@ def test_knobs_have_their_own_names_and_fields() -> None:
     paths = [path for knob in knobs() for path in knob.paths]
     assert len(set(names)) == len(names)
     assert len(set(paths)) == len(paths)
+
+
+def test_the_docs_say_where_knobs_stand_while_others_are_measured_and_what_order_is_expected() -> None:
+    text = " ".join((Path(__file__).parents[2] / "docs" / "accuracy.md").read_text(encoding="utf-8").split())
+    beside = [f"{knob.name} ({knob.beside})" for knob in knobs() if knob.beside is not None]
+    orders = [f"{knob.name} {Fraction(knob.order).limit_denominator(9)}" for knob in knobs() if knob.order]
+    assert beside and orders
+    assert [said for said in (*beside, *orders) if said not in text] == []
 
 
 @pytest.mark.parametrize("knob", knobs(), ids=lambda knob: knob.name)

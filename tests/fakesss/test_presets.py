@@ -1,5 +1,6 @@
 """Presets: which combination is which, the file that is shipped, and what `quality` makes of it in a scene."""
 
+import datetime
 from collections.abc import Iterator
 from dataclasses import replace
 from pathlib import Path
@@ -8,7 +9,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from fakesss import quality
+from fakesss import quality, render
 from fakesss.accuracy.errors import JUST_NOTICEABLE
 from fakesss.accuracy.measuring import Timing
 from fakesss.accuracy.measuring_combinations import Combination
@@ -16,8 +17,9 @@ from fakesss.accuracy.presets import as_toml, chosen
 from fakesss.inspect import explain
 from fakesss.knob import knobs
 from fakesss.problem import BadInput
-from fakesss.scene import Scene, scene_paths
+from fakesss.scene import Scene
 
+ROOT = Path(__file__).parents[2]
 NAMES = ("interactive", "survey", "reference")
 
 
@@ -152,14 +154,45 @@ def test_quality_contradicts_the_published_style() -> None:
         Scene.from_dict({"quality": "survey", "style": "as published"}, "scene.toml")
 
 
+def test_the_shipped_presets_are_a_thorough_run_of_the_documented_scenes() -> None:
+    """The docs name the command that made them."""
+    measured = quality.presets()["measured"]
+    text = " ".join((ROOT / "docs" / "accuracy.md").read_text(encoding="utf-8").split())
+    words = measured["command"].split()
+    assert words[:2] == ["fakesss", "tradeoff"] and "--quick" not in words and "--knob" not in words
+    assert measured["command"] in text
+    assert measured["scenes"] == ["figure", "knot", "benchmarks/lit_head.toml"]
+    assert words[2:5] == measured["scenes"]
+    assert measured["size"] == [256, 256]
+    assert measured["rounds"]["knobs"] >= 15 and measured["rounds"]["combinations"] >= 6
+    assert datetime.date.fromisoformat(measured["date"])
+    machine = measured["machine"]
+    assert machine["processor"] not in ("", "x86_64", "aarch64", "arm64")
+    assert {"gl_renderer", "cores", "load"} <= machine.keys()
+
+
 @pytest.mark.parametrize("name", NAMES)
-def test_the_shipped_presets_can_be_drawn_and_say_where_they_are_from(name: str) -> None:
-    shipped = quality.presets()
-    assert shipped["measured"]["command"].startswith("fakesss tradeoff ")
-    assert {"machine", "date", "scenes", "size"} <= shipped["measured"].keys()
-    known = {knob.name: set(knob.paths) for knob in knobs()}
-    for knob, settings in shipped[name]["settings"].items():
-        assert set(settings) <= known[knob] <= set(scene_paths())
-    filled = Scene().replace({"quality": name})
-    for settings in shipped[name]["settings"].values():
+def test_the_shipped_presets_are_of_knobs_that_there_are(name: str) -> None:
+    shipped = quality.presets()[name]
+    numbers = ("ms", "ratio", "rmse", "max_abs", "flip", "flip_everywhere", "flip_everywhere_from_reference")
+    assert all(shipped[number] >= 0 for number in numbers)
+    assert set(shipped) == {*numbers, "because", "settings"}
+    known = {knob.name: knob for knob in knobs()}
+    unused = {"shadow taps", "local thickness rays"}  # by all of the documented scenes
+    assert shipped["settings"].keys() == known.keys() - unused
+    for knob, settings in shipped["settings"].items():
+        levels = [level.changes for level in known[knob].all_levels]
+        assert settings in [{path: to for path, to in changes.items() if to is not None} for changes in levels]
+
+
+@pytest.mark.gl
+@pytest.mark.parametrize("name", NAMES)
+def test_the_shipped_presets_can_be_drawn(name: str) -> None:
+    shipped = quality.presets()[name]["settings"]
+    filled = Scene(object="torus:1000", size=(48, 48)).replace({"quality": name, "light.shadows": True})
+    for settings in shipped.values():
         assert {path: filled.at(path) for path in settings} == settings
+    picture = render(filled)
+    assert np.isfinite(picture).all()
+    assert 0.1 < (picture[..., 3] > 0).mean() < 0.9
+    assert np.ptp(picture[..., :3]) > 0.1
