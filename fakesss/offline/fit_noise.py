@@ -1,7 +1,7 @@
 """The noise of a path-traced target: how its channels go together, and what it alone makes of the errors.
 
-A path carries all three channels, so they err together: correlations of .8 to .9 were measured. A fit that takes them
-for independent has colours twice as uncertain as they are, and one that takes them for one, none uncertain at all.
+A path carries all three channels, so they err together: correlations of .33 (red and blue of ketchup) to .96 were
+measured. Taken for independent, marble's colours come out three times as uncertain as they are.
 """
 
 from typing import Any

@@ -1,5 +1,6 @@
 """The shader fitted to a measured medium, and what the fit is worth: errors, times, and what is left over."""
 
+import math
 import time
 from dataclasses import dataclass
 from typing import Any
@@ -19,7 +20,7 @@ from fakesss.offline.fit_noise import FEWEST, again, correlation, floor
 from fakesss.offline.fit_solver import EXPONENTS
 from fakesss.offline.fit_start import starting_scene
 from fakesss.offline.fit_times import measured
-from fakesss.offline.path_tracing import path_traced
+from fakesss.offline.path_tracing import PathTraced, path_traced
 from fakesss.offline.physical_scene import lights
 from fakesss.offline.settings import PathTracing
 from fakesss.problem import BadInput
@@ -60,19 +61,11 @@ def fit_medium(
 ) -> Report:
     """Fit `scene` to its own path-traced picture. `BadInput` for what cannot be drawn, traced or fitted."""
     medium, plain = medium_named(settings.medium, "--to"), settings.model_copy(update={"highlights": False})
-    check_flip()
     scene = scene.replace({"alpha": False})
-    if not lights(scene):
-        raise BadInput(
-            "scene: no light shines, so the medium is black and there is nothing to fit; raise light.diffuse"
-        )
-    basis(scene)  # what cannot be fitted is said before hours of path tracing
     alone = matte(scene)
-    traced = path_traced(alone, plain, quiet=quiet)
-    together = correlation(again(alone, plain, FEWEST, quiet), traced.image)
+    traced, target = target_of(alone, plain, quiet)
     as_many = plain.model_copy(update={"samples": traced.samples})  # --noise may have stopped it before
     began = time.perf_counter()
-    target = Target(traced.image, traced.standard_error, together)
     found = fit(starting_scene(scene, medium, settings.size_mm), target, starts, seed, quiet)
     taken = time.perf_counter() - began
     fitted, start = (shared_renderer().render(matte(each)).image for each in (found.scene, found.start))
@@ -88,7 +81,7 @@ def fit_medium(
         "starts": [tried(one) for one in found.tries],
         **numbers(near),
         "start_errors": numbers(errors(start, traced.image)),
-        "noise": floor(traced, together, near, seed),
+        "noise": floor(traced, target.correlation, near, seed),
         "model_max_abs": float(np.abs(fitted - found.picture).max()),
         "seconds": {"shader": times.shader, "path_traced": traced.samples * times.sample, "fit": taken},
         "speed_up": traced.samples * times.ratio,
@@ -103,6 +96,19 @@ def fit_medium(
     }
     pictures = {"target": traced.image, "fitted": fitted, "start": start}
     return Report(found.scene, concluded(document), pictures)
+
+
+def target_of(alone: Scene, plain: PathTracing, quiet: bool | None) -> tuple[PathTraced, Target]:
+    """The picture of the object alone, and what a fit sees of it; what is missing is said before hours of tracing."""
+    check_flip()
+    if not lights(alone):
+        raise BadInput("scene: no light shines, so there is nothing to fit; raise light.diffuse or light.ambient")
+    basis(alone)
+    traced = path_traced(alone, plain, quiet=quiet)
+    if not math.isfinite(traced.noise):
+        raise BadInput("target: it is nothing but noise, so there is nothing to fit; raise samples, or give it light")
+    together = correlation(again(alone, plain, FEWEST, quiet), traced.image)
+    return traced, Target(traced.image, traced.standard_error, together)
 
 
 def concluded(document: dict[str, Any]) -> dict[str, Any]:

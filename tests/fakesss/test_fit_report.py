@@ -58,6 +58,36 @@ def test_the_fit_comes_nearer_than_the_start_and_is_a_real_picture(report: Repor
     assert report.scene.material.specular_contribution == SCENE.material.specular_contribution
 
 
+def test_the_background_does_not_change_what_is_fitted(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Skin of 5 mm is so thin that much of the background shines through."""
+    monkeypatch.setenv("FAKESSS_CACHE", str(tmp_path))
+    thin = PathTracing(medium="skin1", size_mm=5, samples=16)
+    scene = Scene(object="torus:4000", size=(24, 24))
+    black, green = (
+        fit_medium(scene.replace({"background": colour}), thin, 1, 0, Named("torus", ""), quiet=True)
+        for colour in ((0.0, 0.0, 0.0), (0.1, 0.9, 0.2))
+    )
+    assert green.scene.material == black.scene.material and green.scene.background == (0.1, 0.9, 0.2)
+    assert (green.document["rmse"], green.document["flip"]) == (black.document["rmse"], black.document["flip"])
+
+
+def test_without_flip_nothing_is_traced_in_vain(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr("fakesss.accuracy.errors.find_spec", lambda name: None)
+    monkeypatch.setattr("fakesss.offline.fit_report.path_traced", lambda *_: pytest.fail("traced"))
+    with pytest.raises(BadInput, match="FLIP: its package is not installed"):
+        fit_medium(SCENE, SETTINGS, 1, 0, Named("figure", ""), quiet=True)
+
+
+def test_every_key_of_the_document_is_documented(report: Report) -> None:
+    page = (Path(__file__).parents[2] / "docs" / "accuracy.md").read_text(encoding="utf-8").split("## Fit")[1]
+    nested = ("parameters", "starts", "noise", "seconds", "leftover", "matched", "thickness")
+    inside = [report.document[name] for name in nested]
+    tables = [report.document, *(next(iter(one.values())) if one is inside[0] else one for one in inside[:1])]
+    tables += [inside[1][0], *inside[2:], report.document["leftover"]["thickness"][0]]
+    keys = {key for table in tables for key in table}
+    assert sorted(key for key in keys if f"`{key}`" not in page) == []
+
+
 def test_noise_is_told_beside_the_error_and_taken_out_of_it(report: Report) -> None:
     told = report.document
     noise = told["noise"]
@@ -206,11 +236,12 @@ def test_a_fitted_mesh_file_is_found_from_any_folder(tmp_path: Path, monkeypatch
 @pytest.mark.parametrize(
     ("arguments", "sentence"),
     [
-        (("--to", "medium.marbel"), 'did you mean "marble"?'),
+        (("--to", "medium.marbel"), '--to: "medium.marbel" is no measured medium; did you mean "marble"?'),
         (("--to", "opaque"), "no measured medium"),
         (("--to", "marble", "--samples", "7"), "samples: 7: must be"),
         (("--to", "marble", "--set", "light.kind=spot"), "path-traced pictures have no spots"),
         (("--to", "marble", "--set", "exposure=0"), "exposure is 0"),
+        (("--to", "marble", "--set", "light.diffuse=[0,0,0]", "--set", "light.ambient=[0,0,0]"), "no light shines"),
     ],
 )
 def test_bad_input_is_one_sentence(arguments: tuple[str, ...], sentence: str) -> None:

@@ -4,8 +4,10 @@ import json
 from pathlib import Path
 
 import numpy as np
+import OpenEXR
 import pytest
 from click.testing import CliRunner
+from PIL import Image
 
 import fakesss.cli_picture  # noqa: F401  (adds `render`)
 from fakesss.cli import commands
@@ -55,6 +57,37 @@ def test_highlights_are_the_shaders() -> None:
     np.testing.assert_allclose((glossy - matt)[..., :3], specular[..., :3], atol=1e-6)
     outside = matt[..., 3] == 0
     assert (glossy[outside][:, :3] == np.float32(scene.background)).all()
+
+
+def test_a_file_says_how_it_was_made(tmp_path: Path) -> None:
+    for suffix in (".png", ".exr"):
+        told = render("--path-traced", "skin1", "--samples", "8", "--seed", "3", "-o", tmp_path / f"a{suffix}")
+        assert told["provenance"]["seed"] == 3
+    with Image.open(tmp_path / "a.png") as picture:
+        words = picture.text["Comment"]
+    with OpenEXR.File(str(tmp_path / "a.exr")) as file:
+        assert file.header()["comments"] == words
+    assert words.startswith("Path-traced, not the shader's. {") and '"medium": "skin1"' in words
+
+
+def test_a_denoised_file_is_marked(tmp_path: Path) -> None:
+    pytest.importorskip("pyoidn")
+    arguments = ["render", "sphere:4000", "--size", "24x16", "--path-traced", "skin1", "--samples", "8", "--denoise"]
+    result = CliRunner().invoke(commands, [*arguments, "-o", str(tmp_path / "a.png")], catch_exceptions=False)
+    assert ", denoised, " in result.stdout
+    with Image.open(tmp_path / "a.png") as picture:
+        assert "Denoised by Open Image Denoise" in picture.text["Comment"]
+
+
+def test_gloss_can_be_left_out(tmp_path: Path) -> None:
+    told = render("--path-traced", "skin1", "--samples", "8", "--no-highlights", "-o", tmp_path / "a.png")
+    assert told["provenance"]["highlights"] is False
+
+
+def test_a_noise_that_nobody_knows_is_told_as_such(tmp_path: Path) -> None:
+    dark = ("--set", "light.diffuse=[0,0,0]", "--set", "light.ambient=[0,0,0]", "--path-traced", "skin1")
+    told = render(*dark, "--samples", "16", "--noise", "0.1", "-o", tmp_path / "a.png")
+    assert told["noise"] is None and "hardly any path met light" in " ".join(told["warnings"])
 
 
 @pytest.mark.parametrize(

@@ -10,6 +10,7 @@ from typing import ClassVar
 
 import numpy as np
 import pytest
+import trimesh
 from numpy.typing import NDArray
 
 from fakesss.media import MEDIA, Medium
@@ -145,6 +146,25 @@ def test_without_mitsuba_the_mend_is_named(monkeypatch: pytest.MonkeyPatch) -> N
     monkeypatch.setitem(sys.modules, "mitsuba", None)
     with pytest.raises(BadInput, match=r"pip install 'fakesss\[offline\]'"):
         traced(16)
+
+
+def test_without_opengl_nothing_is_traced_in_vain(fake: type[FakeTracer], monkeypatch: pytest.MonkeyPatch) -> None:
+    def no_opengl(scene: Scene) -> None:
+        raise BadInput("OpenGL: none")
+
+    monkeypatch.setattr(path_tracing, "highlights", no_opengl)
+    with pytest.raises(BadInput, match="OpenGL"):
+        traced(16, highlights=True)
+    assert fake.traced == []
+
+
+def test_parts_that_overlap_are_warned_of(fake: type[FakeTracer], tmp_path: Path) -> None:
+    balls = [trimesh.creation.icosphere(2), trimesh.creation.icosphere(2).apply_translation([0.7, 0.1, 0.0])]
+    trimesh.util.concatenate(balls).export(tmp_path / "two.ply")
+    scene = SCENE.replace({"object": str(tmp_path / "two.ply")})
+    settings = PathTracing(medium="marble", samples=8, highlights=False)
+    assert path_traced(scene, settings, quiet=True).warnings[0].startswith("Parts of the object overlap")
+    assert not path_traced(scene, settings.model_copy(update={"medium": "opaque"}), quiet=True).warnings
 
 
 def test_without_the_denoiser_the_mend_is_named(monkeypatch: pytest.MonkeyPatch) -> None:

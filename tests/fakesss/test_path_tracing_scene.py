@@ -104,8 +104,11 @@ def test_a_medium_is_known_by_its_names(name: str) -> None:
 def test_settings_say_what_is_wrong() -> None:
     with pytest.raises(BadInput, match="study: medium: 'marbel': \"marbel\" is no measured medium; did you mean"):
         validated(PathTracing, {"medium": "marbel"}, "study")
-    with pytest.raises(ValidationError, match="multiple of 4"):
-        PathTracing(medium="marble", samples=10)
+    for samples in (10, 4, 1 << 21):
+        with pytest.raises(ValidationError, match="must be a multiple of 4 from 8 to 1048576"):
+            PathTracing(medium="marble", samples=samples)
+    with pytest.raises(BadInput, match=r"study: size_mm: 1e-06: must be > 0\.1"):
+        validated(PathTracing, {"medium": "marble", "size_mm": 1e-6}, "study")
 
 
 def test_a_noise_target_ends_at_the_first_round_that_meets_it() -> None:
@@ -113,3 +116,5 @@ def test_a_noise_target_ends_at_the_first_round_that_meets_it() -> None:
     assert settings.rounds([]) == 16
     assert settings.rounds([0.9, 0.1, 0.5, 0.4, 0.3, 0.19, 0.25]) == 6  # not by chance at the second
     assert PathTracing(medium="marble", samples=64).rounds([0.0] * 5) == 16
+    loud = PathTracing(medium="marble", samples=64, noise=0.5)
+    assert loud.rounds([0.9, 0.9, 0.9, 0.49, 0.44]) == 5  # .49 of what is seen is .56 of what is there

@@ -87,7 +87,7 @@ def test_pure_absorption_is_beer_lambert() -> None:
     np.testing.assert_allclose(traced.image[middle][:, :3], expected[middle], atol=0.01)
     outside = traced.image[..., 3] == 0
     assert (traced.image[outside][:, :3] == np.float32(scene.background)).all()
-    assert traced.noise == 0  # nothing scatters
+    assert traced.noise == np.inf and traced.provenance["noise"] is None  # no light of its own
 
 
 def test_an_opaque_sphere_is_lambert_and_where_the_shader_has_it() -> None:
