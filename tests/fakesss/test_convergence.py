@@ -6,7 +6,8 @@ graphics*, 1996). With d = 2 that is 3/4, for rays over a hemisphere as for samp
 and distances, 2/3. Independent random samples would have 1/2.
 """
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterator, Sequence
+from contextlib import contextmanager
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -14,12 +15,17 @@ from typing import Any
 import numpy as np
 import pytest
 from numpy.typing import NDArray
+from scipy.spatial.transform import Rotation
 from test_exact_light import ball_on_table
 
+from fakesss import hemisphere
+from fakesss.accuracy import exact_light
 from fakesss.accuracy.convergence import fitted_order
-from fakesss.accuracy.exact import Truth, exact_picture, exact_thickness
+from fakesss.accuracy.exact import Truth, exact_picture, exact_thickness, picture
 from fakesss.accuracy.exact_light import point_occlusion
 from fakesss.camera import View
+from fakesss.hemisphere import even_directions
+from fakesss.local_thickness import cast_inwards
 from fakesss.occlusion import cast_rays
 from fakesss.problem import BadInput
 from fakesss.renderer import Renderer
@@ -65,13 +71,34 @@ SIZES = [
 ]
 
 
+@contextmanager
+def turned_directions() -> Iterator[None]:
+    """Rays along the lattice turned at random: no direction is one of those that a truth is to judge."""
+    turn = Rotation.from_quat([0.3, -0.5, 0.7, 0.2])
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(hemisphere, "even_directions", lambda number: turn.apply(even_directions(number)))
+        yield
+
+
 @pytest.mark.parametrize("size", SIZES)
 @pytest.mark.parametrize("name", ["figure", "knot"])
 def test_baked_rays_are_better_than_random_ones(name: str, size: Size) -> None:
     """Per-vertex RMSE of [a]: an even lattice of directions over the sphere, N^-3/4."""
     mesh = load_object(f"{name}:{size.faces}")
-    truth = cast_rays(mesh, size.truth, "cosine")[0]
+    with turned_directions():
+        truth = cast_rays(mesh, size.truth, "cosine")[0]
     holds(f"{name} rays", powers(3, size.most), lambda n: rms(cast_rays(mesh, n, "cosine")[0] - truth), 0.65, 0.85)
+
+
+@pytest.mark.parametrize("size", SIZES)
+@pytest.mark.parametrize("name", ["figure", "knot"])
+def test_rays_inwards_are_better_than_random_ones(name: str, size: Size) -> None:
+    """Per-vertex RMSE of local thickness: the way inside jumps where the surface behind does, so again N^-3/4."""
+    mesh = load_object(f"{name}:{size.faces}")
+    with turned_directions():
+        truth = cast_inwards(mesh, size.truth, 0.5)[0]
+    found = {n: rms(cast_inwards(mesh, n, 0.5)[0] - truth) for n in powers(3, size.most)}
+    holds(f"{name} rays inwards", list(found), lambda n: found[n], 0.65, 1.0)
 
 
 @pytest.mark.gl
@@ -151,6 +178,54 @@ def test_shadows_edges_follow_the_texels(renderer: Renderer, tmp_path: Path, siz
         return mean(drawn[asked] / plain[asked] - truth)
 
     holds(f"shadow map, {filtering}", powers(5, 9), error, 0.8, 1.25)
+
+
+@pytest.mark.gl
+@pytest.mark.parametrize("size", SIZES)
+def test_taps_fill_a_penumbra(renderer: Renderer, tmp_path: Path, size: Size, monkeypatch: pytest.MonkeyPatch) -> None:
+    """RMSE within the penumbra of a ball to 1,024 rays through the disc: places on a disc, d = 2, N^-3/4."""
+    bright = {"material.diffuse": (1, 1, 1), "material.diffuse_contribution": 1.0, "material.backlight": 0.0}
+    scene = Scene(object=ball_on_table(tmp_path), size=(3 * size.pixels, 3 * size.pixels), supersampling=1)
+    scene = scene.replace({**bright, "light.ambient": (0, 0, 0), "light.specular": (0, 0, 0), "camera.elevation": 50.0})
+    disc = {"shadow.filter": "disc", "shadow.radius": 0.05, "shadow.map_size": 4096}
+    scene = scene.replace({"light.azimuth": 40.0, "light.shadows": True, **disc})
+    plain = renderer.render(scene.replace({"light.shadows": False})).image[..., 0]
+    monkeypatch.setattr(exact_light, "DISC_RAYS", 1024)
+    traced = Truth(scene, 1)
+    truth = picture(traced, (slice(0, scene.size[1]), slice(0, scene.size[0])))[..., 0] / np.maximum(plain, 1e-6)
+    asked = (plain > 0.15 * plain.max()) & (truth > 0.02) & (truth < 0.98)
+    assert asked.sum() > 200
+
+    def error(taps: int) -> float:
+        drawn = renderer.render(scene.replace({"shadow.samples": taps})).image[..., 0]
+        return rms(drawn[asked] / plain[asked] - truth[asked])
+
+    holds("shadow taps", powers(0, 5), error, 0.6, 0.9)
+
+
+@pytest.mark.gl
+@pytest.mark.parametrize("size", SIZES)
+@pytest.mark.parametrize("name", ["figure:20000", "knot:20000"])
+@pytest.mark.parametrize("every", [2, 4])
+def test_a_sparse_layer_errs_most_along_outlines(renderer: Renderer, name: str, size: Size, every: int) -> None:
+    """Errors of thickness, in texels a side of the sparse layer, h = 1/N apart.
+
+    Inside, bilinear interpolation of a round surface errs as h^2: the median. Towards an outline thickness sinks to 0
+    as a root, so that a strip h wide errs as h^1/2: the mean falls as h^3/2, the root mean square as h.
+    """
+    scene = Scene(object=name, size=(16, 16), supersampling=1).replace({"layers.resolution": every})
+
+    def differences(texels: int) -> NDArray[Any]:
+        asked = scene.replace({"size": (every * texels, every * texels)})
+        truth = exact_thickness(asked)
+        drawn = renderer.data(asked, ("thickness",), samples=1)["thickness"]
+        return np.asarray((drawn - truth)[truth > 0])
+
+    found = {count: differences(count) for count in (size.pixels * k // 2 for k in (1, 2, 3, 4))}
+    label = f"{name}, second layer at every {every}th sample"
+    holds(f"{label}, median", list(found), lambda n: float(np.median(np.abs(found[n]))), 1.6, 2.6)
+    holds(f"{label}, mean", list(found), lambda n: mean(found[n]), 1.25, 2.0)
+    holds(f"{label}, rms", list(found), lambda n: rms(found[n]), 0.7, 1.5)
 
 
 @pytest.mark.gl
