@@ -17,7 +17,7 @@ import tomli_w
 
 from fakesss.accuracy.errors import JUST_NOTICEABLE
 from fakesss.accuracy.measuring_combinations import Combination
-from fakesss.accuracy.measuring_knobs import ERRORS
+from fakesss.accuracy.measuring_knobs import ERRORS, NEARER
 from fakesss.knob import Knob
 
 BUDGET_MS = 33.0  # thirty pictures a second
@@ -65,7 +65,8 @@ def survey(measured: Sequence[Combination]) -> Preset:
     if below:
         cheapest = min(below, key=lambda one: one.worst.ms)
         alike = [one for one in below if not cheapest.faster(one)]
-        return Preset(min(alike, key=lambda one: (one.noticed, one.error("flip"))), f"the cheapest below {limit}", True)
+        nearest = min(alike, key=lambda one: (one.noticed, one.error("flip")))
+        return Preset(nearest, f"the cheapest below {limit}" + (NEARER if nearest is not cheapest else ""), True)
     nearest = min(measured, key=lambda one: (one.noticed, one.worst.ms))
     return Preset(nearest, f"the nearest to the reference; nothing stays below {limit}", False)
 

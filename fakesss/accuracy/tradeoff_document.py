@@ -188,7 +188,7 @@ def as_text(document: Mapping[str, Any]) -> str:
 
 def knob_lines(knob: Mapping[str, Any]) -> Iterator[str]:
     """A knob's table."""
-    order = f", order {knob['order']['fitted']:.2f}" if knob["order"] else ""
+    order = ", order {fitted:.2f} ({expected:.2f} expected)".format(**knob["order"]) if knob["order"] else ""
     yield f"{knob['name'].upper()}  against {knob['reference']}{order}; recommended: {knob['recommended']}"
     cost = "bake s" if knob["baked"] else "ms"
     band = f"{knob['points'][0]['coverage']:.1%} band"  # how often it holds the true median

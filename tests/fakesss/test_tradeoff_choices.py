@@ -56,6 +56,7 @@ def test_where_none_is_below_the_most_exact_is() -> None:
 def test_of_times_that_cannot_be_told_apart_the_smaller_error_counts() -> None:
     found = sampled((2, 2.0, 0.09), (4, 2.01, 0.02), (6, 6, 0.01))
     assert found.recommended.value == 4
+    assert found.because.endswith("cannot be told to be slower than that, and is nearer to the reference")
     assert found.facts()["pareto"] == [4, 6]
 
 
