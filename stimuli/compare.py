@@ -37,7 +37,7 @@ class Compare(PathTracing):
     def name(self) -> str:
         """What tables call it; a denoised picture is marked."""
         name = self.label or self.image or f"path-traced {self.medium}"
-        return f"{name}, denoised" if self.denoise and "denoised" not in name else name
+        return f"{name}, denoised" if self.denoise and not name.endswith(", denoised") else name
 
     @property
     def where(self) -> str:

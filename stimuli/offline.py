@@ -25,7 +25,8 @@ from stimuli.drawn import Drawn
 from stimuli.levels import written
 from stimuli.shipped import Shipped, expected_minutes, shipped, shown
 
-LIBRARIES = ("numpy", "scipy", "trimesh", "scikit-image", "fast-simplification", "zlib")  # mesh, sums, encoding
+MESH = ("trimesh", "scikit-image", "fast-simplification")
+LIBRARIES = ("numpy", "scipy", *MESH, "embreex", "zlib")  # sums, the mesh, its silhouette by rays, encoding
 NOT_KEPT = {"seconds", "scene_sha256"}  # no two renderings share a time; the manifest has the scene itself
 
 log = logging.getLogger(__name__)
@@ -113,7 +114,7 @@ def encoded(result: PathTraced) -> Drawn:
     from fakesss.renderer import picture_warnings
 
     origin = {name: value for name, value in result.provenance.items() if name not in NOT_KEPT}
-    warnings = picture_warnings(result.image, alpha=False)
+    warnings = (*picture_warnings(result.image, alpha=False), *result.warnings)
     return with_cues(encode_png(result.image), to_8bit(result.image[..., :3]), warnings, origin)
 
 

@@ -33,6 +33,9 @@ CHECKS = ("browser", "depth_checks", "doctor", "hard_edges", "reference")
 FITTING = ("cli_fit", "fit", "fit_model", "fit_solver", "fit_start", "fit_uncertainty")
 FITTED = ("fit_matched", "fit_leftover", "fit_times", "fit_report", "fit_files")
 TRACING = ("media",)  # with the folder offline: see `tracing_files`
+# What pictures that are traced have in common with those that are drawn: mesh, rays, lights and encoding.
+RAYS = ("calls", "camera", "crossings", "lights", "mesh", "ray_casting", "reference", "shapes", "solidity")
+ENCODING = ("colour", "image_io", "png")
 ROOMS = ("accuracy", "offline")  # folders of nothing but such
 NOT_DRAWING = frozenset((*TRACING, *COMMANDS, *TIMES, *LOOKS, *PLOTS, *CHECKS, *FITTING, *FITTED))
 # What thickness does not depend on; a sweep of any of it measures thickness once.
@@ -143,4 +146,4 @@ def tracing_files() -> list[Path]:
     """The source that path-traced pictures come from; what fits the shader to them is none."""
     root = Path(fakesss.__file__).parent
     room = [path for path in sorted((root / "offline").glob("*.py")) if path.stem not in {*FITTING, *FITTED}]
-    return [*(root / f"{stem}.py" for stem in TRACING), *room]
+    return [*(root / f"{stem}.py" for stem in (*TRACING, *RAYS, *ENCODING)), *room]

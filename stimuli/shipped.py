@@ -13,7 +13,7 @@ from functools import cache
 from pathlib import Path
 from typing import Any
 
-from fakesss.offline.settings import PathTracing
+from fakesss.offline.settings import OPAQUE, PathTracing
 from fakesss.problem import BadInput
 from fakesss.scene import Scene
 from stimuli.manifest import sha256
@@ -21,6 +21,7 @@ from stimuli.manifest import sha256
 SHELF = Path(__file__).with_name("templates")
 SEEN = {"object", "size", "background", "exposure", "camera", "light", "lights"}  # what of a scene a path can meet
 GLOSS = {"specular", "shininess", "specular_contribution"}  # what of its material the shader's highlights need
+LAMBERTIAN: Any = {"material": {"diffuse"}}  # what of its material an opaque object shows
 HIGHLIGHTS: Any = {"material": GLOSS, "shadow": True, "supersampling": True, "style": True}
 
 
@@ -48,6 +49,9 @@ def shown(scene: Scene, settings: PathTracing) -> dict[str, Any]:
     """Everything in study.toml that the picture depends on, as JSON."""
     seen = scene.model_dump(mode="json", include=SEEN)
     drawn = scene.model_dump(mode="json", include=HIGHLIGHTS) if settings.highlights else {}
+    if settings.medium == OPAQUE:
+        lambertian = scene.model_dump(mode="json", include=LAMBERTIAN)["material"]
+        drawn = {**drawn, "material": {**drawn.get("material", {}), **lambertian}}
     return {"scene": {**seen, **drawn}, "settings": settings.model_dump(mode="json")}
 
 

@@ -79,11 +79,11 @@ class Study(Strict):
         names = {"factor name": [factor.name for factor in self.factor]}
         names["factor path"] = [factor.path for factor in self.factor]
         names["control label"] = [control.label for control in self.control]
+        names["compare label"] = [entry.name for entry in self.compare]
         for what, given in names.items():
             twice = {name for name in given if given.count(name) > 1}
             if twice:
                 raise ValueError(f'{what} "{sorted(twice)[0]}" is used twice; give each its own')
-        names["compare label"] = [entry.name for entry in self.compare]
         for what, given in names.items():
             formula = next((name for name in given if name.startswith(FORMULA)), None)
             if formula is not None:

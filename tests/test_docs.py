@@ -3,6 +3,7 @@
 The survey's own keys are checked in tests/study_server/test_export_tables.py.
 """
 
+import re
 from pathlib import Path
 
 import pytest
@@ -57,3 +58,14 @@ def test_every_command_has_an_example_and_stands_in_the_changelog() -> None:
 def test_every_page_is_in_the_contents() -> None:
     pages = {path.stem for path in (ROOT / "docs").glob("*.md")} - {"index"}
     assert pages == set(page("index").split(":maxdepth: 1")[1].replace("```", "").split())
+
+
+@pytest.mark.parametrize("folder", ["", "docs", "stimuli", "fakesss", "analysis", "study_server", "benchmarks"])
+def test_no_figure_is_left_to_be_filled_in(folder: str) -> None:
+    found = [
+        path
+        for kind in ("md", "py", "toml")
+        for path in (ROOT / folder).glob(f"**/*.{kind}" if folder else f"*.{kind}")
+    ]
+    assert found
+    assert [path for path in found if re.search("@[A-Z]+@", path.read_text(encoding="utf-8"))] == []

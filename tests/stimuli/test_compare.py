@@ -51,9 +51,30 @@ def test_a_path_traced_picture_is_the_scene_with_fields_set_and_no_picture_of_ou
     assert base.label == "path-traced skin1, denoised"
 
 
+def test_a_denoised_picture_s_label_says_so_whatever_else_it_says(tmp_path: Path) -> None:
+    labels = ["marble, not denoised", "the one, denoised", "mine"]
+    text = "".join(f'{SKIN}denoise = true\nlabel = "{label}"\n' for label in labels)
+    found = [s.label for s in stimuli_of(load(tmp_path, f'title = "x"\n{text}'))]
+    assert found == ["marble, not denoised, denoised", "the one, denoised", "mine, denoised"]
+
+
+@pytest.mark.parametrize(
+    ("second", "name"),
+    [
+        (SKIN.replace("samples = 8", "samples = 12"), "path-traced skin1"),
+        ('[[compare]]\nimage = "path-traced skin1"\n', "path-traced skin1"),
+        (f'{SKIN}label = "path-traced skin1"\nseed = 1\n', "path-traced skin1"),
+    ],
+)
+def test_no_two_pictures_have_one_name(tmp_path: Path, second: str, name: str) -> None:
+    with pytest.raises(BadInput) as caught:
+        load(tmp_path, f'title = "x"\n{SKIN}{second}')
+    assert str(caught.value) == f'study.toml: compare label "{name}" is used twice; give each its own'
+
+
 def test_the_same_scene_in_two_media_is_two_pictures(tmp_path: Path) -> None:
     other = SKIN.replace("skin1", "marble")
-    found = stimuli_of(load(tmp_path, f'title = "x"\n[design]\nrepeats = 1\n{SKIN}{other}{SKIN}'))
+    found = stimuli_of(load(tmp_path, f'title = "x"\n[design]\nrepeats = 1\n{SKIN}{other}{SKIN}label = "again"\n'))
     assert [s.same_picture_as for s in found[:3]] == [None, None, "img01"]
     assert found[3].path_tracing is not None  # one shown again is path-traced too
 
@@ -190,7 +211,7 @@ def test_verify_traces_again_only_when_asked(
 def test_our_shaders_make_it_stale_only_where_they_draw_its_highlights(
     folder: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    (folder / "study.toml").write_text(f"{HEAD}{SKIN}{SKIN}highlights = false\n", encoding="utf-8")
+    (folder / "study.toml").write_text(f'{HEAD}{SKIN}{SKIN}label = "matt"\nhighlights = false\n', encoding="utf-8")
     build(folder, quiet=True)
     drawn = drawn_ids(monkeypatch)
     monkeypatch.setattr("stimuli.picture.source_sha256", lambda tracing=False: "the same" if tracing else "another")

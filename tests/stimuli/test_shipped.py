@@ -1,5 +1,6 @@
 """The path-traced pictures that come with the program: taken where they fit, and what the code would make again."""
 
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -11,10 +12,11 @@ from fakesss.colour import decode_srgb
 from fakesss.offline.path_tracing import PathTraced, path_traced
 from fakesss.picture_reading import read_picture
 from fakesss.problem import BadInput
-from stimuli import offline, shipped
+from fakesss.shapes import load_object
+from stimuli import offline, rebuild_offline, shipped
 from stimuli.design import Stimulus
 from stimuli.offline import asked_for
-from stimuli.picture import build_key, draw
+from stimuli.picture import build_key, draw, tracing_files
 from stimuli.rebuild_offline import asked_by
 from stimuli.shipped import shelf
 
@@ -82,6 +84,81 @@ def test_every_shipped_picture_is_one_of_a_template_s() -> None:
 def test_a_shipped_picture_is_of_one_scene(path: str, value: Any, fits: bool) -> None:
     scene, settings = asked_for(PICTURES[0])
     assert (shipped.shipped(scene.replace({path: value}), settings) is not None) == fits
+
+
+@pytest.mark.parametrize("stimulus", PICTURES, ids=ids)
+def test_a_shipped_picture_is_of_the_mesh_that_its_object_is_now(stimulus: Stimulus) -> None:
+    """It is taken by the object's name: a sculpture that changed needs `python -m stimuli.rebuild_offline`."""
+    found = shipped.shipped(*asked_for(stimulus))
+    assert found is not None and stimulus.scene is not None
+    assert found.record["provenance"]["mesh_sha256"] == load_object(stimulus.scene.object).sha256
+
+
+@pytest.mark.parametrize("highlights", [True, False])
+def test_an_opaque_picture_is_of_one_colour_and_a_medium_s_of_any(highlights: bool, tmp_path: Path) -> None:
+    made_by = dict.fromkeys(offline.LIBRARIES, "1")
+
+    def key(medium: str, **fields: Any) -> str:
+        scene, settings = asked_for(PICTURES[0])
+        change = {"medium": medium, "highlights": highlights, "seed": 9}  # a seed of none that is shipped
+        changed = replace(
+            PICTURES[0],
+            scene=scene.replace({f"material.{name}": value for name, value in fields.items()}),
+            path_tracing=settings.model_copy(update=change),
+        )
+        return build_key(changed, (512, 512), tmp_path, made_by)
+
+    assert key("opaque") != key("opaque", diffuse=(0.1, 0.5, 0.2))
+    assert key("marble") == key("marble", diffuse=(0.1, 0.5, 0.2))
+    assert key("opaque") == key("opaque", backlight=0.0)
+    assert (key("opaque") != key("opaque", specular=0.1)) == highlights
+
+
+@pytest.mark.parametrize("library", offline.LIBRARIES)
+def test_a_picture_that_is_traced_here_depends_on_each_library(library: str, tmp_path: Path) -> None:
+    made_by = dict.fromkeys(offline.LIBRARIES, "1")
+    _, settings = asked_for(PICTURES[0])
+    ours = replace(PICTURES[0], path_tracing=settings.model_copy(update={"seed": 9, "highlights": False}))
+    before = build_key(ours, (512, 512), tmp_path, made_by)
+    assert before != build_key(ours, (512, 512), tmp_path, {**made_by, library: "2"})
+    assert before == build_key(ours, (512, 512), tmp_path, {**made_by, "gl_renderer": "another"})
+
+
+def test_rays_find_the_outline_of_a_picture_that_is_traced() -> None:
+    assert "embreex" in offline.LIBRARIES
+    assert {"path_tracing.py", "silhouette.py", "crossings.py"} <= {path.name for path in tracing_files()}
+
+
+def record(folder: Path, name: str, content: str) -> None:
+    (folder / f"{name}.json").write_text(content, encoding="utf-8")
+    (folder / f"{name}.png").write_bytes(b"")
+
+
+def test_making_them_again_removes_only_pictures_of_its_own(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    folder = tmp_path / "thesis"
+    folder.mkdir()
+    record(folder, "no-longer-asked-for", f'{{"command": "{rebuild_offline.COMMAND}"}}')
+    for number, content in enumerate(["[]", "no JSON", '{"command": "another"}', "{}"]):
+        record(folder, f"strange-{number}", content)
+    (folder / "notes.txt").write_text("mine", encoding="utf-8")
+    (folder / "lonely.png").write_bytes(b"")
+    strangers = {path.name for path in folder.iterdir() if not path.name.startswith("no-longer")}
+    monkeypatch.setattr(rebuild_offline, "SHELF", tmp_path)
+    made = {"command": rebuild_offline.COMMAND, "provenance": {"samples": 8, "noise": 0.5, "seconds": 1}}
+    monkeypatch.setattr(rebuild_offline, "rebuild", lambda stimulus: (b"picture", made))
+    rebuild_offline.main("thesis")
+    ours = {rebuild_offline.file_name(each.label) for each in PICTURES}
+    assert len(ours) == 6
+    assert {path.name for path in folder.iterdir()} == strangers | {
+        f"{name}.{kind}" for name in ours for kind in ("png", "json")
+    }
+
+
+def test_a_template_that_is_not_there_makes_no_folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(rebuild_offline, "SHELF", tmp_path)
+    with pytest.raises(BadInput, match='template "theses" is not known; did you mean "thesis"'):
+        rebuild_offline.main("theses")
+    assert list(tmp_path.iterdir()) == []
 
 
 @pytest.mark.parametrize(("name", "value"), [("medium", "skin2"), ("size_mm", 26), ("seed", 1), ("denoise", False)])

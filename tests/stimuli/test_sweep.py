@@ -13,6 +13,7 @@ from fakesss import texture_pool
 from fakesss.gpu import shared
 from stimuli import build as building
 from stimuli.build import build
+from stimuli.picture import thicknesses
 
 NEW_THINGS = {
     moderngl.Context: ("buffer", "texture", "renderbuffer", "depth_renderbuffer", "framebuffer", "program"),
@@ -31,7 +32,15 @@ PATHS = {
 
 @pytest.fixture
 def made(monkeypatch: pytest.MonkeyPatch) -> list[Counter[str]]:
-    """What each picture of a build made or wrote in graphics memory."""
+    """What each picture of a build made or wrote in graphics memory.
+
+    What earlier tests left is forgotten: a first picture whose thickness is known would leave the texture that
+    thickness needs to the second.
+    """
+    thicknesses.clear()
+    shared().uploads.clear()
+    shared().drawn.clear()
+    shared().pool.release()
     pictures: list[Counter[str]] = []
     for kind, names in NEW_THINGS.items():
         for name in names:
@@ -67,7 +76,6 @@ def study(folder: Path, path: str, levels: list[Any]) -> Path:
 def test_a_sweep_of_what_leaves_the_mesh_alone_uploads_nothing_after_its_first_picture(
     tmp_path: Path, made: list[Counter[str]], path: str
 ) -> None:
-    shared().uploads.clear()
     build(study(tmp_path, path, PATHS[path]), quiet=True)
     assert len(made) == len(PATHS[path])
     assert made[0]["Context.buffer"] > 0

@@ -14,6 +14,8 @@ from stimuli.picture import NOT_DRAWING, drawing_files, tracing_files
 ROOT = Path(fakesss.__file__).parent
 MODULES = {path.relative_to(ROOT).with_suffix("").as_posix().replace("/", "."): path for path in ROOT.rglob("*.py")}
 CALLED = ("__init__", "renderer", "image_io", "picture_reading", "shapes", "gpu")  # by stimuli.picture
+OF_HIGHLIGHTS = {"renderer", "lighting_terms"}  # a picture with them depends on all that draws
+OF_NO_PICTURE = {"__init__", "cache", "problem", "scene"}  # what a scene says is in the build key itself
 LOOKS_INTO = ("renderer", "inspect")  # `render --views`, which no build asks for
 
 
@@ -45,8 +47,9 @@ def test_every_module_is_known_to_draw_or_not() -> None:
 
 def test_every_module_that_traces_is_known() -> None:
     traces = drawing_modules(("offline.path_tracing", "offline.outlook")) - drawing_modules()
-    offline = {MODULES[module] for module in traces if module == "media" or module.startswith("offline.")}
-    assert offline <= set(tracing_files())
+    offline = {module for module in traces if module.startswith("offline.")}
+    called = {name for module in offline for name in imports(module)} | offline
+    assert {MODULES[name] for name in called - OF_HIGHLIGHTS - OF_NO_PICTURE} <= set(tracing_files())
 
 
 def test_every_shader_is_known_to_draw_or_not() -> None:
