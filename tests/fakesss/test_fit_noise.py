@@ -18,7 +18,7 @@ pytestmark = pytest.mark.gl
 
 SCENE = matte(Scene(object="figure:4000", size=(32, 32)).replace({"light.shadows": True}))
 FITTED = ("diffuse.0", "diffuse.1", "backlight", "diffuse_contribution")  # of marble's, what is at no bound
-COUNTS = [(8, 0.45), pytest.param((40, 0.25), marks=pytest.mark.long)]
+COUNTS = [(6, 0.5), pytest.param((40, 0.2), marks=pytest.mark.long)]
 
 
 @pytest.fixture(autouse=True)
