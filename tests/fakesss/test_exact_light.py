@@ -9,7 +9,7 @@ import trimesh
 from numpy.typing import NDArray
 
 from fakesss.accuracy.exact import Truth
-from fakesss.accuracy.exact_light import lit_shares, onto_smooth_surface, point_occlusion
+from fakesss.accuracy.exact_light import lit_shares, onto_smooth_surface, point_occlusion, sample_occlusion
 from fakesss.accuracy.exact_sight import corner_shares, interpolated
 from fakesss.camera import direction
 from fakesss.ray_casting import Caster
@@ -124,3 +124,11 @@ def test_beside_a_wall_points_are_as_open_as_the_closed_form(tmp_path: Path) -> 
     c = np.clip(apart / 0.3, 0, 1)
     np.testing.assert_allclose(found, 1 - (np.arccos(c) - c * np.sqrt(1 - c * c)) / np.pi, atol=5e-3)
     assert found.min() < 0.6 and found.max() == 1
+    # the same of 64 samples in each place, with 64 rays each, their own directions
+    places, numbers, up = np.repeat(points, 64, axis=0), np.tile(np.arange(64), 30), np.tile(UP, (30 * 64, 1))
+    near = settings.model_copy(update={"method": "screen-space"})
+    spread = sample_occlusion(Caster(mesh), places, up, numbers, near, 64).reshape(30, 64)
+    np.testing.assert_allclose(spread.mean(axis=1), found, atol=8e-3)
+    assert spread.std(axis=1).max() > 0.005
+    far = sample_occlusion(Caster(mesh), places, up, numbers, settings, 64).reshape(30, 64)
+    assert (far.mean(axis=1) < found - 0.05).any()
