@@ -31,7 +31,7 @@ LOOKS = ("inspect", "views", "contact_sheet", "explanation", "graph_drawing", "g
 PLOTS = ("profile_plot", "relief", "lighting_terms")
 CHECKS = ("browser", "depth_checks", "doctor", "hard_edges", "reference")
 FITTING = ("cli_fit", "fit", "fit_model", "fit_solver", "fit_start", "fit_uncertainty")
-FITTED = ("fit_matched", "fit_leftover", "fit_times", "fit_report", "fit_files")
+FITTED = ("fit_matched", "fit_leftover", "fit_noise", "fit_times", "fit_report", "fit_files")
 TRACING = ("media",)  # with the folder offline: see `tracing_files`
 # What pictures that are traced have in common with those that are drawn: mesh, rays, lights and encoding.
 RAYS = ("calls", "camera", "crossings", "lights", "mesh", "ray_casting", "reference", "shapes", "solidity")
