@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 
 from fakesss.colour import decode_srgb
 from fakesss.offline.path_tracing import PathTraced, path_traced
+from fakesss.offline.settings import NEAR
 from fakesss.picture_reading import read_picture
 from fakesss.problem import BadInput
 from fakesss.shapes import load_object
@@ -55,7 +56,7 @@ def test_the_template_s_pictures_are_there_and_nothing_is_traced(
     medium, size_mm = (drawn.origin[name] for name in ("medium", "size_mm"))
     assert stimulus.path_tracing is not None
     assert (medium, size_mm) == (stimulus.path_tracing.medium, stimulus.path_tracing.size_mm)
-    assert drawn.origin["noise"] <= (stimulus.path_tracing.noise or 1)
+    assert drawn.origin["noise"] <= NEAR * (stimulus.path_tracing.noise or 1)
     assert drawn.origin.keys() >= {"mitsuba", "samples", "seed", "seconds", "cores", "processor", "shipped"}
     assert bool(drawn.origin["denoised"]) == ("denoised" in stimulus.label)
 
