@@ -41,6 +41,19 @@ CUTS = [
 ]
 
 
+def fetched_pictures(page: Page) -> set[str]:
+    """Addresses of the pictures that have come whole, which grow as they come."""
+    fetched: set[str] = set()
+    page.on("requestfinished", lambda request: fetched.add(request.url) if "/picture/" in request.url else None)
+    return fetched
+
+
+def wait_for_pictures(page: Page, fetched: set[str], number: int) -> None:
+    """Until so many have come."""
+    while len(fetched) < number:
+        page.wait_for_timeout(20)
+
+
 @pytest.mark.parametrize(("manner", "seconds", "measured_by", "ahead"), CUTS)
 def test_network_away_at_every_trial(
     page: Page, tmp_path: Path, manner: str, seconds: int, measured_by: str, ahead: int
@@ -55,13 +68,11 @@ def test_network_away_at_every_trial(
         if is_pretended:
             page.add_init_script(ABORT_BY_THE_CLOCK)
             page.clock.install()
-        fetched: set[str] = set()
-        page.on("requestfinished", lambda request: fetched.add(request.url) if "/picture/" in request.url else None)
+        fetched = fetched_pictures(page)
         page.goto(network.url + begun(url).removeprefix(url))
         for first in range(1, TRIALS + 1, ahead + 1):
             due(page, first)
-            while len(fetched) < min(first + max(ahead, 1), TRIALS):  # those that may be looked at meanwhile
-                page.wait_for_timeout(20)
+            wait_for_pictures(page, fetched, min(first + max(ahead, 1), TRIALS))  # that may be looked at meanwhile
             network.cut() if manner == "reset" else network.swallow()
             last = min(first + ahead, TRIALS)
             for trial in range(first, last + 1):
@@ -200,8 +211,10 @@ def test_the_clock_is_set_while_an_answer_waits(page: Page, tmp_path: Path, hour
     study = short_study(tmp_path, TRIALS)
     with served(study) as url, faulty_network(url) as network:
         page.clock.install()
+        fetched = fetched_pictures(page)
         page.goto(network.url + begun(url).removeprefix(url))
         due(page, 1)
+        wait_for_pictures(page, fetched, 2)
         network.cut()
         answer(page, 1)
         due(page, 2)

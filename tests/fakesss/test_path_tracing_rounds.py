@@ -174,7 +174,6 @@ def test_without_the_denoiser_the_mend_is_named(monkeypatch: pytest.MonkeyPatch)
 
 
 def test_the_denoiser_smooths_the_picture_and_marks_it() -> None:
-    pytest.importorskip("pyoidn")
     rough, smooth = traced(16), traced(16, denoise=True)
     inside = rough.image[..., 3] == 1
     errors = [np.abs(picture.image[inside][:, :3] - 1).mean() for picture in (rough, smooth)]
@@ -267,7 +266,8 @@ def test_the_end_is_foreseen_from_the_noise() -> None:
 KILLED = """
 from fakesss.offline import path_tracing as p
 from fakesss.scene import Scene
-import sys
+import signal, sys
+signal.signal(signal.SIGINT, signal.default_int_handler)  # a shell's background jobs inherit that it is ignored
 p.KEEP_EVERY = 0.0
 scene = Scene.from_dict({"object": "sphere:4000", "size": [16, 12]}, "test")
 p.path_traced(scene, p.PathTracing(medium="skin1", samples=int(sys.argv[1]), highlights=False), quiet=True)
