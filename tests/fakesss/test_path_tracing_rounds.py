@@ -4,7 +4,6 @@ import os
 import signal
 import subprocess
 import sys
-import time
 from pathlib import Path
 from typing import ClassVar
 
@@ -12,6 +11,7 @@ import numpy as np
 import pytest
 import trimesh
 from numpy.typing import NDArray
+from waiting import until
 
 from fakesss.media import MEDIA, Medium
 from fakesss.offline import path_tracing, tally
@@ -281,11 +281,12 @@ def test_a_process_that_was_killed_goes_on_to_the_same_bytes(
     scene = Scene.from_dict({"object": "sphere:4000", "size": (16, 12)}, "test")
     settings = PathTracing(medium="skin1", samples=160, highlights=False)
     killed = subprocess.Popen([sys.executable, "-c", KILLED, str(1 << 20)], stderr=subprocess.DEVNULL, env=os.environ)
-    deadline = time.monotonic() + 120
-    while not (list(tmp_path.glob("cache/path-traced/*/latest.npz"))) and time.monotonic() < deadline:
-        time.sleep(0.02)
-    killed.send_signal(how)
-    assert killed.wait(60) != 0
+    try:
+        until(lambda: bool(list(tmp_path.glob("cache/path-traced/*/latest.npz"))), 120)
+        killed.send_signal(how)
+        assert killed.wait(60) != 0
+    finally:
+        killed.kill()
     (latest,) = tmp_path.glob("cache/path-traced/*/latest.npz")
     with np.load(latest) as found:
         rounds = len(found["noises"])
