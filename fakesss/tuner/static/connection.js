@@ -1,0 +1,79 @@
+// The WebSocket: wishes out, frames in. Never more than one wish is under way; of those made meanwhile only the newest is.
+
+const AGAIN_MS = 1000; // after the connection is lost
+
+export class Connection extends EventTarget {
+  #socket = null;
+  #number = 0;
+  #waiting = null; // the newest wish that has not been sent
+  #underway = null; // {number, asked, wish}: sent, its frame not yet shown
+  #last = null; // the last wish, to be made again by a new connection
+
+  constructor() {
+    super();
+    this.#open();
+  }
+
+  // `wish` is {settings, view, moving}; `asked` the time stamp of the input that made it (performance.now's clock).
+  wish(wish, asked = performance.now()) {
+    // a wish that waits keeps its time: latency counts from the first input that the picture answers
+    this.#waiting = { wish, asked: this.#waiting?.asked ?? asked };
+    this.#last = wish;
+    this.#send();
+  }
+
+  // The frame is on the screen, or was not wanted: the next may come.
+  shown() {
+    this.#underway = null;
+    this.#send();
+  }
+
+  get isOpen() {
+    return this.#socket.readyState === WebSocket.OPEN;
+  }
+
+  #open() {
+    const address = new URL("socket", location.href);
+    address.protocol = address.protocol.replace("http", "ws");
+    address.hash = "";
+    this.#socket = new WebSocket(address);
+    this.#socket.binaryType = "arraybuffer";
+    this.#socket.onopen = () => {
+      this.#underway = null;
+      if (!this.#waiting && this.#last) this.#waiting = { wish: { ...this.#last, moving: false }, asked: performance.now() };
+      this.#tell("open");
+      this.#send();
+    };
+    this.#socket.onmessage = ({ data }) => this.#receive(data);
+    this.#socket.onclose = () => {
+      this.#tell("lost");
+      setTimeout(() => this.#open(), AGAIN_MS);
+    };
+  }
+
+  #send() {
+    if (!this.isOpen || this.#underway || !this.#waiting) return;
+    const { wish, asked } = this.#waiting;
+    this.#waiting = null;
+    this.#underway = { number: ++this.#number, asked, wish };
+    this.#socket.send(JSON.stringify({ number: this.#number, ...wish }));
+  }
+
+  #receive(data) {
+    if (typeof data === "string") {
+      const message = JSON.parse(data);
+      this.#tell("message", message);
+      if (message.number === this.#underway?.number) this.shown(); // there will be no frame of it
+      return;
+    }
+    const length = new DataView(data).getUint32(0, true);
+    const header = JSON.parse(new TextDecoder().decode(new Uint8Array(data, 4, length)));
+    if (header.number !== this.#underway?.number) return; // of a connection that was lost
+    const image = new Blob([new Uint8Array(data, 4 + length)], { type: header.type });
+    this.#tell("frame", { header, image, asked: this.#underway.asked, wish: this.#underway.wish });
+  }
+
+  #tell(name, detail) {
+    this.dispatchEvent(new CustomEvent(name, { detail }));
+  }
+}
