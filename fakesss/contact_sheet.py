@@ -58,19 +58,24 @@ class Panel:
         inside = self.values[self.covered]
         return float(inside.min()), float(inside.max())
 
-    def picture(self) -> Image.Image:
-        """The panel's picture with its longer side SIDE, in 8-bit sRGB."""
+    def pixels(self, least: float = 1) -> Bytes:
+        """8-bit RGB (H, W, 3), sample by sample; marks are lines at least `least` samples wide."""
         pixels = self.values
         if self.colours:
             low, high = self.range()
             pixels = colour_mapped((self.values - low) / max(high - low, 1e-12), self.colours)
         shown = np.where(self.covered[..., None], pixels, np.array(EMPTY)).astype(np.uint8)
-        height, width = shown.shape[:2]
-        scale = SIDE / max(height, width)
         for mark in self.marks:
-            shown[thickened(mark.pixels, 1 / scale)] = mark.colour
+            shown[thickened(mark.pixels, least)] = mark.colour
+        return shown
+
+    def picture(self) -> Image.Image:
+        """The panel's picture with its longer side SIDE, in 8-bit sRGB."""
+        height, width = self.values.shape[:2]
+        scale = SIDE / max(height, width)
         kind = Image.Resampling.LANCZOS if scale < 1 else Image.Resampling.NEAREST
-        image = Image.fromarray(shown).resize((max(1, round(width * scale)), max(1, round(height * scale))), kind)
+        size = max(1, round(width * scale)), max(1, round(height * scale))
+        image = Image.fromarray(self.pixels(1 / scale)).resize(size, kind)
         if self.line is not None:
             dashed(image, round((self.line + 0.5) * scale))
         return image
