@@ -10,7 +10,7 @@ export class Settings extends EventTarget {
   #current = { changes: {}, effects: {} };
   #before = []; // what undo goes back to
   #after = [];
-  #gesture = null; // its name while one goes on: it is one step of undo
+  #gestures = new Map(); // those that go on: name -> {lasts, isStep: whether undo has its step}
 
   // `start` is what the server says at /start.json.
   constructor(start) {
@@ -31,7 +31,7 @@ export class Settings extends EventTarget {
   }
 
   get isMoving() {
-    return this.#gesture !== null;
+    return this.#gestures.size > 0;
   }
 
   // What undo would go back to: the B of A/B. Null at the start.
@@ -39,19 +39,24 @@ export class Settings extends EventTarget {
     return this.#before.length ? structuredClone(this.#before.at(-1)) : null;
   }
 
-  // The value of a scene path now; `null` is a field left empty.
+  // The value of a scene path now ("lights.0.azimuth" too); `null` is a field left empty.
   value(path) {
-    if (path in this.#current.changes) return structuredClone(this.#current.changes[path]);
-    return this.original(path);
+    return this.valueIn(this.#current, path);
+  }
+
+  // The same in other settings: those of a pin, say.
+  valueIn({ changes }, path) {
+    const [field, within] = parts(path);
+    return structuredClone(walk(field in changes ? changes[field] : walk(this.start.base, field.split(".")), within));
   }
 
   // The value in the scene that the tuner was started with.
   original(path) {
-    return structuredClone(path.split(".").reduce((place, part) => place?.[part], this.start.base));
+    return structuredClone(walk(this.start.base, path.split(".")));
   }
 
   isChanged(path) {
-    return path in this.#current.changes;
+    return !isSame(this.value(path), this.original(path));
   }
 
   effect(name) {
@@ -65,10 +70,7 @@ export class Settings extends EventTarget {
 
   setMany(values, gesture = null) {
     this.#change(gesture, (next) => {
-      for (const [path, value] of Object.entries(values)) {
-        if (isSame(value, this.original(path))) delete next.changes[path];
-        else next.changes[path] = structuredClone(value);
-      }
+      for (const [path, value] of Object.entries(values)) this.#put(next, path, value);
     });
   }
 
@@ -83,7 +85,7 @@ export class Settings extends EventTarget {
   reset(...paths) {
     this.#change(null, (next) => {
       if (!paths.length) Object.assign(next, { changes: {}, effects: {} });
-      for (const path of paths) delete next.changes[path];
+      for (const path of paths) this.#put(next, path, this.original(path));
     });
   }
 
@@ -92,11 +94,21 @@ export class Settings extends EventTarget {
     this.#change(null, (next) => Object.assign(next, structuredClone(settings)));
   }
 
-  // A gesture ends: the picture may become as it will be.
-  settle() {
-    if (this.#gesture === null) return;
-    this.#gesture = null;
-    this.#tell(false);
+  // A gesture that goes on beside all others (an animation) until it is settled by name; undo ends it too.
+  begin(gesture) {
+    this.#gestures.set(gesture, { lasts: true, isStep: false });
+  }
+
+  isGoingOn(gesture) {
+    return this.#gestures.has(gesture);
+  }
+
+  // A gesture ends, without a name whichever does not last: the picture may become as it will be.
+  settle(gesture = null) {
+    const before = this.#gestures.size;
+    if (gesture === null) this.#endPassing();
+    else this.#gestures.delete(gesture);
+    if (this.#gestures.size < before) this.#tell();
   }
 
   undo() {
@@ -107,31 +119,58 @@ export class Settings extends EventTarget {
     this.#step(this.#after, this.#before);
   }
 
+  #put(next, path, value) {
+    const [field, within] = parts(path);
+    if (within.length) {
+      const whole = this.valueIn(next, field);
+      walk(whole, within.slice(0, -1))[within.at(-1)] = value;
+      this.#put(next, field, whole);
+    } else if (isSame(value, this.original(field))) delete next.changes[field];
+    else next.changes[field] = structuredClone(value);
+  }
+
   #change(gesture, change) {
     const next = this.current;
     change(next);
     if (isSame(next, this.#current)) return;
-    if (gesture === null || gesture !== this.#gesture) {
+    if (!this.#gestures.has(gesture)) this.#endPassing();
+    if (gesture !== null && !this.#gestures.has(gesture)) this.#gestures.set(gesture, { lasts: false, isStep: false });
+    const going = this.#gestures.get(gesture);
+    if (!going?.isStep) {
       this.#before.push(this.#current);
       if (this.#before.length > HISTORY) this.#before.shift();
+      if (going) going.isStep = true;
     }
     this.#after.length = 0;
-    this.#gesture = gesture;
     this.#current = next;
-    this.#tell(gesture !== null);
+    this.#tell();
+  }
+
+  #endPassing() {
+    for (const [name, { lasts }] of this.#gestures) if (!lasts) this.#gestures.delete(name);
   }
 
   #step(from, to) {
     if (!from.length) return;
-    this.#gesture = null;
+    this.#gestures.clear();
     to.push(this.#current);
     this.#current = from.pop();
-    this.#tell(false);
+    this.#tell();
   }
 
-  #tell(moving) {
-    this.dispatchEvent(new CustomEvent("change", { detail: { moving } }));
+  #tell() {
+    this.dispatchEvent(new CustomEvent("change", { detail: { moving: this.isMoving } }));
   }
+}
+
+// The field that a path changes, and where in it: further lights change as a whole list.
+function parts(path) {
+  const [first, ...rest] = path.split(".");
+  return first === "lights" ? [first, rest] : [path, []];
+}
+
+function walk(place, within) {
+  return within.reduce((value, part) => value?.[part], place);
 }
 
 // Whether two JSON values are the same, whatever the order of keys.
