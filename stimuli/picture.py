@@ -26,6 +26,7 @@ if TYPE_CHECKING:
 LIBRARIES = ("moderngl", "numpy", "scipy", "trimesh", "embreex", "scikit-image", "fast-simplification", "pillow")
 # Our own source that no stimulus comes from, by stem; everything else makes pictures stale when it changes.
 COMMANDS = ("__main__", "cli", "cli_analysis", "cli_measure", "cli_picture", "cli_power", "cli_study", "cli_survey")
+TUNER = ("cli_tune", "listening", "scene_toml")  # with the folder tuner
 TIMES = ("bench", "bench_bake", "bench_tables", "direct", "direct_light", "savings")
 LOOKS = ("inspect", "views", "contact_sheet", "explanation", "graph_drawing", "graph_layout")
 PLOTS = ("profile_plot", "relief", "lighting_terms")
@@ -36,8 +37,8 @@ TRACING = ("media",)  # with the folder offline: see `tracing_files`
 # What pictures that are traced have in common with those that are drawn: mesh, rays, lights and encoding.
 RAYS = ("calls", "camera", "crossings", "lights", "mesh", "ray_casting", "reference", "shapes", "solidity")
 ENCODING = ("colour", "image_io", "png")
-ROOMS = ("accuracy", "offline")  # folders of nothing but such
-NOT_DRAWING = frozenset((*TRACING, *COMMANDS, *TIMES, *LOOKS, *PLOTS, *CHECKS, *FITTING, *FITTED))
+ROOMS = ("accuracy", "offline", "tuner")  # folders of nothing but such
+NOT_DRAWING = frozenset((*TRACING, *COMMANDS, *TUNER, *TIMES, *LOOKS, *PLOTS, *CHECKS, *FITTING, *FITTED))
 # What thickness does not depend on; a sweep of any of it measures thickness once.
 ELSEWHERE = ("object", "light", "lights", "shadow", "exposure", "background", "alpha", "occlusion", "blur")
 SURFACE = set(Material.model_fields) - {"thickness"}
