@@ -1,0 +1,37 @@
+"""The tuner's page: its templates, filled with what this scene and this program have."""
+
+from pathlib import Path
+
+from jinja2 import Environment, FileSystemLoader, StrictUndefined
+
+from fakesss.media import MEDIA
+from fakesss.scene import Scene
+from fakesss.shapes import FACES, names
+from fakesss.tuner.controls import EFFECTS, GROUPS, control
+
+HERE = Path(__file__).parent
+PANELS = {"lights": "Lights", "material": "Material", "camera": "Camera", "shader": "Shader", "sweep": "Sweep"}
+SHEETS = ("tuner.css", "stage.css", "compare.css", "sweep.css")
+
+environment = Environment(
+    loader=FileSystemLoader(HERE / "templates"),
+    autoescape=True,
+    undefined=StrictUndefined,
+    trim_blocks=True,
+    lstrip_blocks=True,
+)
+
+
+def page(base: Scene) -> str:
+    """The page of a tuner that was started with `base`, as HTML; the values come with `start.json`."""
+    return environment.get_template("tuner.html").render(
+        base=base,
+        panels=PANELS,
+        sheets=[sheet for sheet in SHEETS if (HERE / "static" / sheet).exists()],
+        groups=GROUPS,
+        control=control,
+        effects=EFFECTS,
+        objects=names(),
+        faces=FACES,
+        media=MEDIA,
+    )
