@@ -11,7 +11,7 @@ from fakesss.tuner.controls import EFFECTS, GROUPS, control
 
 HERE = Path(__file__).parent
 PANELS = {"lights": "Lights", "material": "Material", "camera": "Camera", "shader": "Shader", "sweep": "Sweep"}
-SHEETS = ("tuner.css", "stage.css", "compare.css", "sweep.css")
+SHEETS = ("tuner.css", "stage.css", "legend.css", "compare.css", "sweep.css")
 
 environment = Environment(
     loader=FileSystemLoader(HERE / "templates"),
