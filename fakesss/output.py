@@ -69,3 +69,18 @@ def write_atomically(path: Path, content: bytes) -> None:
 def reason(error: OSError) -> str:
     """The operating system's own words where there are any."""
     return error.strerror or str(error).splitlines()[0]
+
+
+def write_new(path: Path, content: bytes) -> None:
+    """`content` at `path` in one step; `BadInput` if anything stands there already, which is left alone."""
+    try:
+        path.open("xb").close()  # the name is taken before anything is written: of two at once one is refused
+    except FileExistsError:
+        raise BadInput(f"{path}: exists already; choose another name") from None
+    except OSError as error:
+        raise BadInput(f"{path}: cannot be written ({reason(error)}); {MEND}") from None
+    try:
+        write_atomically(path, content)
+    except BaseException:
+        path.unlink(missing_ok=True)
+        raise

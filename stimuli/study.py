@@ -59,12 +59,16 @@ class Study(Strict):
     def load(cls, folder: Path) -> Self:
         """The study in `folder/study.toml`, or `BadInput` in one sentence."""
         path = study_file(folder)
-        tables = read_toml(path)
-        check_levels_are_values(tables, path.name)
-        study = validated(cls, tables, path.name)
-        check_opaque(study.scene, f"{path.name}: scene.alpha")
+        return cls.of(read_toml(path), path.name)
+
+    @classmethod
+    def of(cls, tables: Mapping[str, Any], source: str) -> Self:
+        """The study that a file's tables describe; errors name `source`."""
+        check_levels_are_values(tables, source)
+        study = validated(cls, tables, source)
+        check_opaque(study.scene, f"{source}: scene.alpha")
         for factor in study.factor:
-            check_factor(factor, study.scene, path.name)
+            check_factor(factor, study.scene, source)
         for entry in study.beside:
             entry.scene(study.scene)
         return study
