@@ -1,9 +1,10 @@
 // The WebSocket: wishes out, frames in. Never more than one wish is under way; of those made meanwhile only the newest is.
 
-const AGAIN_MS = 1000; // after the connection is lost
+const AGAIN_MS = [500, 1000, 2000, 4000]; // after the connection is lost, and each time that it could not be made again
 
 export class Connection extends EventTarget {
   #socket = null;
+  #tries = 0; // that failed, one after the other
   #number = 0;
   #waiting = null; // the newest wish that has not been sent
   #underway = null; // {number, asked, wish}: sent, its frame not yet shown
@@ -22,8 +23,9 @@ export class Connection extends EventTarget {
     this.#send();
   }
 
-  // The frame is on the screen, or was not wanted: the next may come.
-  shown() {
+  // The frame of the wish `number` is on the screen, or will never be: the next may come.
+  shown(number) {
+    if (number !== this.#underway?.number) return; // of a connection that was lost while it was decoded
     this.#underway = null;
     this.#send();
   }
@@ -39,6 +41,7 @@ export class Connection extends EventTarget {
     this.#socket = new WebSocket(address);
     this.#socket.binaryType = "arraybuffer";
     this.#socket.onopen = () => {
+      this.#tries = 0;
       this.#underway = null;
       if (!this.#waiting && this.#last) this.#waiting = { wish: { ...this.#last, moving: false }, asked: performance.now() };
       this.#tell("open");
@@ -46,8 +49,8 @@ export class Connection extends EventTarget {
     };
     this.#socket.onmessage = ({ data }) => this.#receive(data);
     this.#socket.onclose = () => {
-      this.#tell("lost");
-      setTimeout(() => this.#open(), AGAIN_MS);
+      this.#tell("lost", { tries: this.#tries });
+      setTimeout(() => this.#open(), AGAIN_MS[Math.min(this.#tries++, AGAIN_MS.length - 1)]);
     };
   }
 
@@ -63,12 +66,12 @@ export class Connection extends EventTarget {
     if (typeof data === "string") {
       const message = JSON.parse(data);
       this.#tell("message", message);
-      if (message.number === this.#underway?.number) this.shown(); // there will be no frame of it
+      if (message.number !== undefined) this.shown(message.number); // there will be no frame of it
       return;
     }
     const length = new DataView(data).getUint32(0, true);
     const header = JSON.parse(new TextDecoder().decode(new Uint8Array(data, 4, length)));
-    if (header.number !== this.#underway?.number) return; // of a connection that was lost
+    if (header.number !== this.#underway?.number) return;
     const image = new Blob([new Uint8Array(data, 4 + length)], { type: header.type });
     this.#tell("frame", { header, image, asked: this.#underway.asked, wish: this.#underway.wish });
   }

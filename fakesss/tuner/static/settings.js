@@ -2,7 +2,8 @@
 //
 // `changes` maps scene paths ("material.backlight", "light.azimuth", "object", "lights": a whole list) to values,
 // `effects` names to "on" or "off". A "change" event follows every change; `event.detail.moving` is true while a gesture
-// (a drag, a held key, an animation) goes on, and the gesture's end is a change of its own that is not.
+// (a drag, a held key, an animation) goes on, and the gesture's end is a change of its own that is not; `byHand` is false
+// for an animation's changes.
 
 const HISTORY = 200;
 
@@ -143,7 +144,7 @@ export class Settings extends EventTarget {
     }
     this.#after.length = 0;
     this.#current = next;
-    this.#tell();
+    this.#tell(!going?.lasts);
   }
 
   #endPassing() {
@@ -158,8 +159,8 @@ export class Settings extends EventTarget {
     this.#tell();
   }
 
-  #tell() {
-    this.dispatchEvent(new CustomEvent("change", { detail: { moving: this.isMoving } }));
+  #tell(byHand = true) {
+    this.dispatchEvent(new CustomEvent("change", { detail: { moving: this.isMoving, byHand } }));
   }
 }
 
