@@ -25,7 +25,7 @@ LOOKS: Mapping[str, str] = {PICTURE: "picture", **{name: kind.title for name, ki
 DRAWINGS = frozenset(name for name, kind in KINDS.items() if kind.make in (landscape, profile))
 """Those that are not seen through the scene's camera: nothing of the scene can be laid over them."""
 
-STOPS = 17  # of a legend's colour scale; with straight lines between them colours are right to some 3/255
+STOPS = 33  # of a legend's colour scale; with straight lines between them colours are right to 6/255
 COARSE = 3  # a drawing has so many times fewer pixels a side while it moves
 ENDS = {  # of a colour map, in words
     "cividis_r": ("yellow", "dark blue"),
@@ -33,7 +33,7 @@ ENDS = {  # of a colour map, in words
     "gray_r": ("white", "black"),
     "gray": ("black", "white"),
     "viridis": ("violet", "yellow"),
-    "berlin": ("blue", "red"),
+    "berlin": ("light blue", "pink"),
 }
 NAMED: Mapping[Colour, str] = {MARK: "red", OTHER: "cyan", EXACT: "white", SOFTENED: "orange"}
 CURVES = ((EXACT, "exact"), (SOFTENED, "softened"), (MARK, "hard edge"))  # of the profile

@@ -9,7 +9,7 @@ from fakesss.contact_sheet import Panel, Plot
 from fakesss.profile_plot import Profile, profile_plot
 from fakesss.renderer import Renderer
 from fakesss.scene import Scene
-from fakesss.views import ROWS, runs, views
+from fakesss.views import KINDS, ROWS, layers_of, runs, view, views
 
 DOCS = Path(__file__).parents[2] / "docs" / "views.md"
 NAMES = [name for row in ROWS for name in row]
@@ -31,6 +31,40 @@ def test_every_view_is_made_and_holds_data(renderer: Renderer) -> None:
     assert all(panel.values.shape[:2] == (40, 60) for panel in panels.values())
     plots = [view.draw((300, 200)) for view in made.values() if isinstance(view, Plot)]
     assert [drawing.shape for drawing in plots] == [(200, 300, 3)] * 2
+
+
+SHELL = Scene(object="shell:8000", size=(60, 48)).replace({"camera.azimuth": 25.0, "occlusion.rays": 32})
+
+
+@pytest.fixture(scope="module")
+def together() -> dict[str, Panel | Plot]:
+    return views(SHELL)
+
+
+@pytest.mark.gl
+@pytest.mark.parametrize("name", NAMES)
+def test_a_view_alone_is_the_one_among_all(together: dict[str, Panel | Plot], name: str) -> None:
+    alone, among = view(SHELL, name), together[name]
+    assert (alone.title, alone.note) == (among.title, among.note)
+    if isinstance(alone, Panel):
+        assert isinstance(among, Panel)
+        np.testing.assert_array_equal(alone.values, among.values)
+        np.testing.assert_array_equal(alone.pixels(), among.pixels())
+        assert alone.limits == among.limits
+    else:
+        assert isinstance(among, Plot)
+        np.testing.assert_array_equal(alone.draw((120, 90)), among.draw((120, 90)))
+
+
+def test_a_view_alone_asks_for_its_own_layers_only() -> None:
+    """So that no view bakes what it does not show."""
+    assert set(KINDS) == set(NAMES)
+    assert layers_of(SHELL, ["second"]) == (SHELL, ("second",))
+    assert layers_of(SHELL, ["specular"]) == (SHELL, ())
+    assert layers_of(SHELL, ["normals", "hard_edges"]) == (SHELL, ("front", "surface", "thickness"))
+    scene, layers = layers_of(SHELL.replace({"occlusion.enabled": False}), ["occlusion"])
+    assert layers == ("front", "surface") and scene.occlusion.enabled
+    assert layers_of(SHELL.replace({"occlusion.method": "screen-space"}), ["occlusion"])[1][1] == "screen_occlusion"
 
 
 @pytest.mark.parametrize("name", NAMES)
