@@ -1,4 +1,5 @@
 // Auto-rotation about +y, and a light that wanders (thesis, section 5). Each is one step of undo from its start to its end.
+import { picked } from "./lights.js";
 
 const DEGREES = 20; // a second, of the light
 const LONGEST_S = 0.25; // a page that was hidden or busy goes on where it was
@@ -15,12 +16,12 @@ export class Animation extends EventTarget {
   #turning = false;
   #wandering = false;
   #azimuth = { exact: 0, written: NaN };
-  #path = null; // of the light: {from, to, angle, gone}
+  #path = null; // of the light: {from, to, angle, gone} and the angles {written} last
   #last = null; // time stamp of the frame before
 
-  constructor({ settings, stage }) {
+  constructor({ settings }) {
     super();
-    Object.assign(this, { settings, stage });
+    this.settings = settings;
     settings.addEventListener("change", () => this.#ended()); // undo ends gestures
   }
 
@@ -89,16 +90,15 @@ export class Animation extends EventTarget {
 
   // Along a great circle to a direction that any is as likely to be as any other, then to the next.
   #wander(seconds) {
-    const path = this.stage.lightPath;
-    const light = ["azimuth", "elevation"].map((angle) => this.settings.value(`${path}.${angle}`));
+    const paths = [picked.path("azimuth"), picked.path("elevation")];
+    const light = paths.map((path) => this.settings.value(path));
     if (!this.#path || this.#path.gone >= this.#path.angle || light.some((angle, i) => angle !== this.#path.written[i])) {
       const [from, to] = [vector(...light), anyDirection()];
       this.#path = { from, to, angle: Math.max(angleBetween(from, to), 1e-3), gone: 0 };
     }
     this.#path.gone += (DEGREES * seconds * Math.PI) / 180;
     this.#path.written = angles(between(this.#path)).map(rounded);
-    const [azimuth, elevation] = this.#path.written;
-    this.settings.setMany({ [`${path}.azimuth`]: azimuth, [`${path}.elevation`]: elevation }, WANDERING);
+    this.settings.setMany(Object.fromEntries(paths.map((path, i) => [path, this.#path.written[i]])), WANDERING);
   }
 
   #tell() {

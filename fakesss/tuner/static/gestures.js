@@ -2,6 +2,7 @@
 //
 // Every gesture is one step of undo, from the first touch to the last. Angles go by the picture: a drag across its
 // shorter side is half a turn.
+import { picked } from "./lights.js";
 
 const SLOP_PX = 6; // a finger trembles by less
 const WHEEL_PAUSE_MS = 250; // after which the next turn of the wheel is another gesture
@@ -58,10 +59,9 @@ class Moves {
   }
 
   light(right, up) {
-    const path = this.stage.lightPath;
-    const azimuth = wrapped(this.settings.value(`${path}.azimuth`) + right);
-    const elevation = upright(this.settings.value(`${path}.elevation`) + up);
-    this.settings.setMany({ [`${path}.azimuth`]: azimuth, [`${path}.elevation`]: elevation }, "light");
+    const azimuth = wrapped(this.settings.value(picked.path("azimuth")) + right);
+    const elevation = upright(this.settings.value(picked.path("elevation")) + up);
+    this.settings.setMany({ [picked.path("azimuth")]: azimuth, [picked.path("elevation")]: elevation }, "light");
   }
 
   zoom(factor) {
@@ -168,7 +168,7 @@ function keys(place, moves, settings) {
   const release = () => {
     held.clear();
     settings.settle();
-    document.getElementById("spoken").textContent = inWords(settings, moves.stage);
+    document.getElementById("spoken").textContent = inWords(settings);
   };
   place.addEventListener("keydown", (event) => {
     if (event.ctrlKey || event.metaKey || event.altKey || !act(event)) return;
@@ -179,11 +179,11 @@ function keys(place, moves, settings) {
   place.addEventListener("blur", () => held.size && release());
 }
 
-function inWords(settings, stage) {
+function inWords(settings) {
   const of = (path) => Math.round(settings.value(path));
   return (
     `Camera ${of("camera.azimuth")}° around, ${of("camera.elevation")}° up; ` +
-    `light ${of(`${stage.lightPath}.azimuth`)}° around, ${of(`${stage.lightPath}.elevation`)}° up.`
+    `light ${of(picked.path("azimuth"))}° around, ${of(picked.path("elevation"))}° up.`
   );
 }
 

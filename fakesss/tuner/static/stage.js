@@ -14,7 +14,6 @@ export function start(context) {
 export class Stage extends EventTarget {
   place = document.getElementById("place"); // what is dragged in, and has the focus for the keys
   canvas = document.getElementById("picture");
-  light = 0; // which one is moved: 0 the main light, n the n-th further one
   #drawing = this.canvas.getContext("2d");
   #select = document.getElementById("view");
   #live = null; // {bitmap, size, header}: the last frame
@@ -34,11 +33,6 @@ export class Stage extends EventTarget {
     new ResizeObserver(() => this.#fit()).observe(this.place);
     onPixelRatio(() => this.#fit());
     this.redraw();
-  }
-
-  // The path of the light that is moved; the main one's if the picked one is gone.
-  get lightPath() {
-    return this.light > 0 && this.light <= this.settings.value("lights").length ? `lights.${this.light - 1}` : "light";
   }
 
   // Ask for the picture anew.
