@@ -159,13 +159,15 @@ def test_the_shipped_presets_are_a_run_of_the_documented_scenes_by_the_documente
     measured = quality.presets()["measured"]
     text = " ".join((ROOT / "docs" / "accuracy.md").read_text(encoding="utf-8").split())
     words = measured["command"].split()
-    assert words[:2] == ["fakesss", "tradeoff"] and "--knob" not in words
+    assert words[:2] == ["fakesss", "tradeoff"] and not {"--knob", "--quick"} & set(words)
     assert measured["command"] in text
     assert measured["scenes"] == ["figure", "knot", "benchmarks/lit_head.toml"]
     assert words[2:5] == measured["scenes"]
     assert measured["size"] == [256, 256]
     assert datetime.date.fromisoformat(measured["date"])
     assert {"gl_renderer", "processor", "cores", "load"} <= measured["machine"].keys()
+    assert measured["machine"]["processor"] not in ("", "x86_64", "arm64", "aarch64"), "no name of a processor"
+    assert measured["rounds"]["knobs"] >= 15 and measured["rounds"]["combinations"] >= 9
 
 
 @pytest.mark.parametrize("name", NAMES)
