@@ -82,6 +82,7 @@ class Ellipsoid:
         return centre - half, centre + half
 
     def distance(self, points: Floats) -> Floats:
+        """To first order (its value over the length of its gradient), which is exact on the surface: (N,)."""
         local = points - np.array(self.centre)
         if self.axes is not None:
             local = np.einsum("ij,jk->ik", local, self.axes)
@@ -119,6 +120,7 @@ class Tube:
         return (control[:, :3] - control[:, 3:]).min(axis=0), (control[:, :3] + control[:, 3:]).max(axis=0)
 
     def distance(self, points: Floats) -> Floats:
+        """To the nearest point of the curve, less the radius there, by Newton's method: (N,)."""
         place = self.nearest_sample(points)
         for _ in range(NEWTON_STEPS):
             curve, speed, bend = self.at(place)

@@ -78,6 +78,7 @@ def culled(node: str, changes: Mapping[str, Any] | None = None) -> Reason:
     """The reason why the picture of a scene, with `changes`, does without the pass `node`; "" where it needs it."""
 
     def why(scene: Scene) -> str:
+        """Why the pass is not drawn in the scene; empty where it is."""
         from fakesss.pipeline import build, samples_of  # of the modules that declare knobs
 
         changed = scene.replace(changes) if changes else scene

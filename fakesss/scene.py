@@ -162,6 +162,7 @@ class Scene(Strict):
 
     @model_validator(mode="after")
     def as_good_as_asked(self) -> Self:
+        """Fills what `quality` settles."""
         if self.quality and self.style == "as published":
             raise ValueError(f'quality "{self.quality}" contradicts style "as published"; leave one of them out')
         if self.quality:
@@ -172,6 +173,7 @@ class Scene(Strict):
 
     @model_validator(mode="after")
     def published_as_it_was(self) -> Self:
+        """The published technique had none of the cheaper layers."""
         asked = {
             "blur.kernel": self.blur.kernel,
             "layers.resolution": self.layers.resolution,

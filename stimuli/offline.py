@@ -14,8 +14,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from fakesss.offline.outlook import is_kept
-from fakesss.offline.path_tracing import PathTraced, path_traced
+from fakesss.offline.path_tracing import PathTraced, path_traced, planned
 from fakesss.offline.settings import PathTracing
 from fakesss.problem import BadInput
 from fakesss.scene import Scene
@@ -77,7 +76,7 @@ def at_hand(stimulus: Stimulus, folder: Path) -> bool:
     """Whether nothing has to be traced for the picture. `BadInput` if it cannot be."""
     scene, settings = asked_for(stimulus)
     with placed(stimulus):
-        return shipped(scene, settings) is not None or is_kept(scene.relative_to(folder), settings)
+        return shipped(scene, settings) is not None or planned(scene.relative_to(folder), settings).done
 
 
 def duration(minutes: float) -> str:

@@ -17,6 +17,7 @@ SIDE = 160  # pixels
 
 
 def main() -> None:
+    """Writes media.png beside this file: a row of each light, a column of each medium."""
     rows = []
     for light in LIGHTS:
         scene = Scene.from_dict({"object": "figure", "size": (SIDE, SIDE), "light": light}, "draw_media.py")

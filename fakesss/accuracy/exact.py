@@ -172,6 +172,7 @@ def exact_picture(scene: Scene, samples: int = 8, rays: int = RAYS, spread: bool
     key = {"version": VERSION, "spread": spread, **content(truth)}
 
     def one(part: Part) -> Floats32:
+        """A tile of the picture, from the cache where it is there."""
         shape = (part[0].stop - part[0].start, part[1].stop - part[1].start, 4)
         place = [part[0].start, part[1].start]
         made = cache.cached(
@@ -261,6 +262,7 @@ def exact_thickness(scene: Scene, samples: int = 1, softened: bool = False) -> F
     truth = Truth(scene, samples)
 
     def one(part: Part) -> Floats:
+        """A tile of the thickness."""
         return truth.thickness(truth.seen(part, softened)).reshape(truth.shape(part))
 
     return together(scene, one, "exact thickness")

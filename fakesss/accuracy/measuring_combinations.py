@@ -228,6 +228,7 @@ def kept(
     scenes = [place.scene(one) for one in settings]
 
     def make() -> dict[str, NDArray[Any]]:
+        """Errors (N, 2, facts) to the exact picture and to the best, and seconds of N and of the baseline, in turn."""
         pictures = [place.rig.renderer.render(scene).image for scene in scenes]
         found = [[errors(picture, truth) for truth in (place.rig.exact, place.reference)] for picture in pictures]
         ways = {number: drawn(place.rig.renderer, scene) for number, scene in enumerate(scenes)}

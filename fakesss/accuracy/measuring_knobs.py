@@ -182,6 +182,7 @@ def kept_times(rig: Rig, knob: Knob) -> tuple[NDArray[np.float64], list[float]]:
     """(levels, rounds, 2) milliseconds of each level and of the picture beside it; seconds of each level's bake."""
 
     def make() -> dict[str, NDArray[Any]]:
+        """The two lists, as arrays that can be kept."""
         # what is baked differently is drawn alike, so one level stands for all
         timed = knob.levels[:1] if knob.baked else knob.levels
         ways = {level.value: drawn(rig.renderer, rig.scene.replace(level.changes)) for level in timed}

@@ -49,6 +49,7 @@ class PathTracing(Strict):
     @field_validator("medium")
     @classmethod
     def known_medium(cls, name: str) -> str:
+        """The medium by its name in the table; `ValueError` names the nearest."""
         if name.lower() == OPAQUE:
             return OPAQUE
         try:

@@ -48,7 +48,7 @@ def test_the_template_s_pictures_are_there_and_nothing_is_traced(
     stimulus: Stimulus, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setattr(offline, "path_traced", nobody)
-    monkeypatch.setattr(offline, "is_kept", nobody)
+    monkeypatch.setattr(offline, "planned", nobody)
     offline.look_ahead([stimulus], tmp_path)
     drawn = draw(stimulus, size=(512, 512), folder=tmp_path)()
     assert (drawn.width, drawn.height) == (512, 512) and len(drawn.png) < 400_000
