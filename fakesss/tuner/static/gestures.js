@@ -11,7 +11,7 @@ const KEY_ZOOM = 1.05;
 const NEAREST = 0.1; // sphere radii
 const FARTHEST = 1e3;
 const BUTTONS = { 0: "turn", 1: "lens", 2: "light" };
-const HOME = ["camera.azimuth", "camera.elevation", "camera.distance", "camera.field_of_view"];
+export const HOME = ["camera.azimuth", "camera.elevation", "camera.distance", "camera.field_of_view"];
 
 const KEYS = {
   ArrowLeft: [-KEY_DEGREES, 0],
