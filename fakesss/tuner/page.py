@@ -5,9 +5,10 @@ from pathlib import Path
 from jinja2 import Environment, FileSystemLoader, StrictUndefined
 
 from fakesss.media import MEDIA
+from fakesss.mesh import EXTENSIONS
 from fakesss.scene import Scene
-from fakesss.shapes import FACES, names
-from fakesss.tuner.controls import EFFECTS, GROUPS, control
+from fakesss.shapes import DEFAULT_FACES, FACES, names
+from fakesss.tuner.controls import EFFECTS, GROUPS
 
 HERE = Path(__file__).parent
 PANELS = {"lights": "Lights", "material": "Material", "camera": "Camera", "shader": "Shader", "sweep": "Sweep"}
@@ -29,9 +30,10 @@ def page(base: Scene) -> str:
         panels=PANELS,
         sheets=[sheet for sheet in SHEETS if (HERE / "static" / sheet).exists()],
         groups=GROUPS,
-        control=control,
         effects=EFFECTS,
         objects=names(),
         faces=FACES,
+        default_faces=DEFAULT_FACES,
+        suffixes=[f".{kind}" for kind in EXTENSIONS],
         media=MEDIA,
     )

@@ -1,0 +1,24 @@
+// What a control is for, at the foot of the panel: for the one under the pointer, else the one that has the focus. The same
+// words describe the control to a screen reader (aria-describedby).
+
+export function start() {
+  const hint = document.getElementById("hint");
+  const panel = document.getElementById("panel");
+  let pointed = null;
+
+  const tipOf = (element) => element?.closest?.("#panel .control, #panel [data-tip]")?.querySelector(".tip")?.textContent;
+  const show = () => {
+    hint.textContent = tipOf(pointed) ?? tipOf(document.activeElement) ?? "";
+  };
+
+  panel.addEventListener("pointerover", ({ target }) => {
+    pointed = target;
+    show();
+  });
+  panel.addEventListener("pointerleave", () => {
+    pointed = null;
+    show();
+  });
+  panel.addEventListener("focusin", show);
+  panel.addEventListener("focusout", show);
+}

@@ -1,0 +1,87 @@
+// A slider and the number beside it. Keys and drags are gestures: each is one step of undo.
+import { written } from "./numbers.js";
+
+const TEN = 10; // steps, with Shift or Page Up
+
+const STEPS = { ArrowRight: 1, ArrowUp: 1, ArrowLeft: -1, ArrowDown: -1, PageUp: TEN, PageDown: -TEN };
+
+export class NumberField {
+  #value = 0;
+  #isStepping = false; // a key is held
+  #isTyping = false; // the text is not what `show` put there
+
+  // `hands`: change(value, isGesture), settle(), tell(problem) for what was typed wrong.
+  constructor(element, scale, hands) {
+    this.slider = element.querySelector("input[type=range]");
+    this.typed = element.querySelector("input.typed");
+    this.scale = scale;
+    this.hands = hands;
+    this.slider?.addEventListener("input", () => hands.change(scale.at(this.slider.valueAsNumber), true));
+    this.slider?.addEventListener("change", hands.settle);
+    this.typed.addEventListener("input", () => (this.#isTyping = true));
+    this.typed.addEventListener("change", () => this.#read());
+    for (const input of [this.slider, this.typed].filter(Boolean)) {
+      input.addEventListener("keydown", (event) => this.#press(event));
+      input.addEventListener("keyup", () => this.#release());
+      input.addEventListener("blur", () => this.#release());
+    }
+  }
+
+  // `unit` is read out after the number.
+  show(value, unit) {
+    this.#value = value;
+    if (this.slider) {
+      this.slider.value = this.scale.place(value);
+      this.slider.setAttribute("aria-valuetext", `${written(value)} ${unit}`.trim());
+    }
+    if (!this.#isTyping) this.typed.value = written(value);
+  }
+
+  #press(event) {
+    if (event.key === "Enter") this.#read();
+    if (event.key === "Escape" && this.#isTyping) this.#forget();
+    const isSlider = event.target === this.slider;
+    const to = this.#to(event, isSlider);
+    if (to === null || event.ctrlKey || event.altKey || event.metaKey) return;
+    event.preventDefault();
+    this.#forget();
+    this.#isStepping = true;
+    this.hands.change(to, true);
+  }
+
+  // The value that a key leads to; null for one that the browser is left. In text, left and right move the cursor.
+  #to({ key, shiftKey }, isSlider) {
+    const { low, high } = this.scale;
+    if (isSlider && key === "Home") return low;
+    if (isSlider && key === "End") return high;
+    if (!(key in STEPS) || (!isSlider && /Left|Right/.test(key))) return null;
+    const to = this.scale.stepped(this.#value, STEPS[key] * (shiftKey && key.startsWith("Arrow") ? TEN : 1));
+    return isSlider && this.#value >= low && this.#value <= high ? Math.min(Math.max(to, low), high) : to;
+  }
+
+  #release() {
+    if (this.#isStepping) this.hands.settle();
+    this.#isStepping = false;
+  }
+
+  #read() {
+    if (!this.#isTyping) return;
+    const { value, problem } = this.scale.read(this.typed.value);
+    this.#say(problem);
+    if (problem) return;
+    this.#forget();
+    this.hands.change(value, false);
+  }
+
+  #forget() {
+    this.#isTyping = false;
+    this.typed.value = written(this.#value);
+    this.#say();
+  }
+
+  #say(problem = "") {
+    this.typed.toggleAttribute("aria-invalid", Boolean(problem));
+    if (problem) this.typed.setAttribute("aria-invalid", "true");
+    this.hands.tell(problem);
+  }
+}
