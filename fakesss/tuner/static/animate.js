@@ -10,71 +10,59 @@ export function start(context) {
   return new Animation(context);
 }
 
-// A "change" event follows when either begins or ends, by whatever.
-export class Animation extends EventTarget {
+// A "change" event follows when one begins or ends, by whatever.
+class Animation extends EventTarget {
   speed = 30; // of the rotation, degrees a second; negative: the other way
-  #turning = false;
-  #wandering = false;
   #azimuth = { exact: 0, written: NaN };
   #path = null; // of the light: {from, to, angle, gone} and the angles {written} last
-  #last = null; // time stamp of the frame before
+  #last = null; // time stamp of the frame before, while one goes on
 
   constructor({ settings }) {
     super();
     this.settings = settings;
-    settings.addEventListener("change", () => this.#ended()); // undo ends gestures
+    settings.addEventListener("change", () => this.#tell()); // undo ends gestures
   }
 
   get turning() {
-    return this.#turning;
+    return this.settings.isGoingOn(TURNING);
   }
 
   get wandering() {
-    return this.#wandering;
+    return this.settings.isGoingOn(WANDERING);
   }
 
-  // Resolves to whether it is on now: who wants less motion is asked.
-  async turn(isOn) {
-    this.#turning = await this.#begun(TURNING, isOn);
-    this.#go();
-    return this.#turning;
+  turn(isOn) {
+    return this.#run(TURNING, isOn);
   }
 
-  async wander(isOn) {
-    this.#path = null;
-    this.#wandering = await this.#begun(WANDERING, isOn);
-    this.#go();
-    return this.#wandering;
+  wander(isOn) {
+    return this.#run(WANDERING, isOn);
   }
 
-  async #begun(gesture, isOn) {
+  // Who wants less motion is asked first.
+  async #run(gesture, isOn) {
     if (isOn && (await isMotionWanted())) this.settings.begin(gesture);
     else this.settings.settle(gesture);
-    return this.settings.isGoingOn(gesture);
+    this.#tell();
+    if (this.#last === null && this.#isGoingOn) {
+      this.#last = performance.now();
+      requestAnimationFrame((at) => this.#tick(at));
+    }
   }
 
-  #ended() {
-    const [turning, wandering] = [TURNING, WANDERING].map((gesture) => this.settings.isGoingOn(gesture));
-    if (turning >= this.#turning && wandering >= this.#wandering) return;
-    this.#turning &&= turning;
-    this.#wandering &&= wandering;
-    this.#tell();
-  }
-
-  #go() {
-    this.#tell();
-    if (this.#last === null && (this.#turning || this.#wandering)) requestAnimationFrame((at) => this.#tick(at));
+  get #isGoingOn() {
+    return this.turning || this.wandering;
   }
 
   #tick(at) {
-    if (!this.#turning && !this.#wandering) {
+    if (!this.#isGoingOn) {
       this.#last = null;
       return;
     }
-    const seconds = Math.min((at - (this.#last ?? at)) / 1000, LONGEST_S); // by the clock, however slow pictures are
+    const seconds = Math.min(Math.max(at - this.#last, 0) / 1000, LONGEST_S); // by the clock, however slow pictures are
     this.#last = at;
-    if (seconds && this.#turning) this.#turn(seconds);
-    if (seconds && this.#wandering) this.#wander(seconds);
+    if (this.turning) this.#turn(seconds);
+    if (this.wandering) this.#wander(seconds);
     requestAnimationFrame((next) => this.#tick(next));
   }
 
