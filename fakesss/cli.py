@@ -1,7 +1,7 @@
 """The `fakesss` command: composes the four packages. Each command imports what it needs when it runs.
 
 The commands themselves stand in `cli_study`, `cli_analysis`, `cli_power`, `cli_picture`, `cli_measure`,
-`cli_fit` and `cli_survey`.
+`cli_fit`, `cli_tune` and `cli_survey`.
 """
 
 import json
@@ -37,7 +37,8 @@ def main() -> None:
     import fakesss.cli_picture
     import fakesss.cli_power
     import fakesss.cli_study
-    import fakesss.cli_survey  # noqa: F401  (all add their commands)
+    import fakesss.cli_survey
+    import fakesss.cli_tune  # noqa: F401  (all add their commands)
 
     try:
         sys.exit(commands(standalone_mode=False) or 0)

@@ -14,6 +14,7 @@ from fakesss.frame import Made, Outcome, Run
 from fakesss.frame_graph import FrameGraph, FrameGraphError, Plan, TextureSpec
 from fakesss.image_io import check_picture, write_image
 from fakesss.memory import peak_bytes, shadow_maps
+from fakesss.mesh import Mesh
 from fakesss.passes.mesh import mesh as mesh_of
 from fakesss.pipeline import NONE, build, samples_of
 from fakesss.problem import BadInput
@@ -34,6 +35,8 @@ class Rendering:
 
     image: Float32  # (H, W, 4), top row first: linear RGB over the background (`alpha`: over nothing), and coverage
     passes: list[dict[str, Any]]  # {"name", "gpu_ms"} in the order they ran; gpu_ms is None unless timed
+    plan: Plan
+    mesh: Mesh
     notes: tuple[str, ...]  # the mesh's repairs and settings that do nothing, one sentence each
     baked: dict[str, Made]
     alpha: bool
@@ -98,10 +101,7 @@ class Renderer:
     ) -> tuple[Plan, Outcome]:
         """The plan of `targets` and what running it gave; `beside` is made too where that changes nothing of them."""
         self._fit(scene, samples)
-        loaded = Run(FrameGraph([mesh_of(scene)]).compile(("mesh",)), self.gpu, self.bakes)()
-        mesh = loaded.values["mesh"]
-        solid = self.bakes.get(("solid", mesh.sha256), lambda: is_solid(mesh))
-        graph = build(scene, samples, solid, forced)
+        graph, loaded = self._declare(scene, samples, forced)
         plan = graph.compile(targets)
         everything = plan if not beside or is_merged(plan, beside) else graph.compile((*targets, beside))
         maps = shadow_maps(plan)
@@ -111,6 +111,18 @@ class Renderer:
         with opengl.reporting_memory(*what_takes_most(plan, scene, samples)):
             outcome = Run(everything, self.gpu, self.bakes, timed)()
         return plan, replace(outcome, baked={**outcome.baked, **loaded.baked})
+
+    def plan(self, scene: Scene, forced: frozenset[str] = NONE) -> tuple[Plan, Mesh]:
+        """What drawing the picture of `scene` would run, and its mesh; nothing is drawn."""
+        graph, loaded = self._declare(scene, samples_of(scene), forced)
+        return graph.compile((PICTURE, "mesh")), loaded.values["mesh"]
+
+    def _declare(self, scene: Scene, samples: int, forced: frozenset[str]) -> tuple[FrameGraph, Outcome]:
+        """The graph, and what loading the mesh gave: the cheapest exact way depends on what it is."""
+        loaded = Run(FrameGraph([mesh_of(scene)]).compile(("mesh",)), self.gpu, self.bakes)()
+        mesh = loaded.values["mesh"]
+        solid = self.bakes.get(("solid", mesh.sha256), lambda: is_solid(mesh))
+        return build(scene, samples, solid, forced), loaded
 
     def _fit(self, scene: Scene, samples: int) -> None:
         size = (scene.size[0] * samples, scene.size[1] * samples)
@@ -129,8 +141,9 @@ def rendering(scene: Scene, plan: Plan, outcome: Outcome) -> Rendering:
     """What a run of `plan` gave, as a picture."""
     image = np.ascontiguousarray(outcome.values[PICTURE][::-1])
     passes = [{"name": name, "gpu_ms": outcome.gpu_ms.get(name)} for name in plan.passes]
-    notes = (*outcome.values["mesh"].repairs, *idle_settings(scene, plan))
-    return Rendering(image, passes, notes, dict(outcome.baked), scene.alpha)
+    mesh: Mesh = outcome.values["mesh"]
+    notes = (*mesh.repairs, *idle_settings(scene, plan))
+    return Rendering(image, passes, plan, mesh, notes, dict(outcome.baked), scene.alpha)
 
 
 def is_merged(plan: Plan, resource: str) -> bool:

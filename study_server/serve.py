@@ -2,7 +2,6 @@
 
 import contextlib
 import ipaddress
-import socket
 import sys
 import threading
 import time
@@ -13,6 +12,7 @@ from typing import Any
 import uvicorn
 from fastapi import FastAPI
 
+from fakesss.listening import address_of, listening
 from fakesss.problem import BadInput
 from study_server.announcement import announcement
 from study_server.app import create_app
@@ -145,29 +145,6 @@ def checked_proxies(proxies: Sequence[str]) -> Sequence[str]:
         if network.prefixlen == 0:
             raise BadInput(f"--proxy {proxy}: is everybody; give the proxy's own address, such as 127.0.0.1")
     return proxies
-
-
-@contextlib.contextmanager
-def listening(host: str, port: int) -> Iterator[socket.socket]:
-    """A bound socket, or `BadInput` in one sentence."""
-    family = socket.AF_INET6 if ":" in host else socket.AF_INET
-    # asyncio turns Nagle's algorithm off only where it sees the protocol's number; with it a reply takes 40 ms more
-    with socket.socket(family, socket.SOCK_STREAM, socket.IPPROTO_TCP) as listener:
-        listener.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
-        try:
-            listener.bind((host, port))
-        except (OSError, OverflowError) as error:
-            reason = getattr(error, "strerror", None) or str(error)
-            raise BadInput(f"{host}:{port}: cannot be listened on ({reason}); choose another with --port") from None
-        listener.listen(2048)
-        yield listener
-
-
-def address_of(listener: socket.socket) -> str:
-    """The URL under which the socket is reached from this machine."""
-    host, port = listener.getsockname()[:2]
-    host = {"0.0.0.0": "127.0.0.1", "::": "[::1]"}.get(host, f"[{host}]" if ":" in host else host)
-    return f"http://{host}:{port}"
 
 
 def announce(app: FastAPI, host: str, url: str, *, proxies: Sequence[str] = (), workers: int = 1) -> None:

@@ -1,0 +1,46 @@
+"""The command that changes a scene while one looks at it: tune."""
+
+import os
+
+import click
+
+from fakesss.cli import AS_JSON, commands, done, say
+from fakesss.cli_picture import scene_named
+
+
+@commands.command()
+@click.argument("scene", default="figure")
+@click.option("--host", default="127.0.0.1", show_default=True, help="0.0.0.0: reachable from other machines.")
+@click.option("--port", default=8010, show_default=True, type=click.IntRange(0, 65535), help="0: any free one.")
+@click.option("--set", "changes", multiple=True, metavar="PATH=VALUE", help="Change one field of the scene.")
+@click.option("--size", metavar="WxH", help="Pixels, for example 512x512.")
+@AS_JSON
+def tune(scene: str, host: str, port: int, changes: tuple[str, ...], size: str | None, as_json: bool) -> None:
+    """Change SCENE in the browser while looking at it: a TOML file, a mesh file or a built-in object.
+
+    Prints an address that holds a secret; whoever knows it can use the tuner until it is stopped with Ctrl-C. Scenes
+    and studies that are kept go into the current folder.
+
+    Example: fakesss tune bunny.ply --set material.backlight=0.8
+    """
+    from fakesss.tuner.serve import serve
+    from stimuli.sweep import write_sweep
+
+    described = scene_named(scene, changes, size)
+
+    def announce(url: str) -> None:
+        done({"url": url, "scene_sha256": described.sha256()}, as_json, url)
+        if hint := ssh_hint(url):
+            say(hint)
+        say("Open this address in a browser. Ctrl-C stops the tuner.")
+
+    serve(described, host, port, write_sweep, announce)
+
+
+def ssh_hint(url: str) -> str:
+    """What to type on the machine that one sits at, if this one is reached by SSH."""
+    connection = os.environ.get("SSH_CONNECTION", "").split()  # client's address and port, server's address and port
+    if len(connection) != 4:
+        return ""
+    port = url.rpartition(":")[2].partition("/")[0]
+    return f"You are here by SSH: on your own machine run  ssh -L {port}:127.0.0.1:{port} {connection[2]}"

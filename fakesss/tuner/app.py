@@ -1,0 +1,114 @@
+"""The tuner's web application: the page, what it starts from, its WebSocket, and how refusals read."""
+
+import asyncio
+import contextlib
+import logging
+from collections.abc import AsyncIterator
+from dataclasses import asdict
+
+from fastapi import APIRouter, FastAPI, WebSocket
+from fastapi.exceptions import RequestValidationError
+from fastapi.responses import HTMLResponse, JSONResponse
+from fastapi.staticfiles import StaticFiles
+from starlette.exceptions import HTTPException
+from starlette.requests import Request
+from starlette.responses import Response
+
+from fakesss import __version__
+from fakesss.calls import EFFECTS
+from fakesss.media import MEDIA
+from fakesss.problem import BadInput
+from fakesss.shader_source import ShaderError
+from fakesss.shapes import names
+from fakesss.tuner import asking
+from fakesss.tuner.page import HERE, page
+from fakesss.tuner.reload import watch_shaders
+from fakesss.tuner.state import AtTuner, Gone, Tuner
+from fakesss.tuner.viewer import Viewer
+
+log = logging.getLogger(__name__)
+router = APIRouter()
+
+
+def create_app(tuner: Tuner) -> FastAPI:
+    """The application of `tuner`, without its guards."""
+    app = FastAPI(title="fakesss tune", docs_url=None, redoc_url=None, openapi_url=None, lifespan=watching)
+    app.state.tuner = tuner
+    app.mount("/static", StaticFiles(directory=HERE / "static"))
+    for part in (router, asking.router):
+        app.include_router(part)
+    for problem in (BadInput, ShaderError):
+        app.add_exception_handler(problem, unfit)
+    app.add_exception_handler(RequestValidationError, not_understood)
+    app.add_exception_handler(HTTPException, no_page)
+    app.add_exception_handler(Gone, nobody)
+    app.add_exception_handler(Exception, unexpected)
+    return app
+
+
+@contextlib.asynccontextmanager
+async def watching(app: FastAPI) -> AsyncIterator[None]:
+    """Looks after the shaders while the application runs."""
+    task = asyncio.create_task(watch_shaders(app.state.tuner))
+    yield
+    task.cancel()
+
+
+@router.get("/")
+def the_page(tuner: AtTuner) -> HTMLResponse:
+    """The tuner's page."""
+    return HTMLResponse(page(tuner.base))
+
+
+@router.get("/start.json")
+def start(tuner: AtTuner) -> JSONResponse:
+    """What the page starts from."""
+    from fakesss.tuner.looks import LOOKS  # loads matplotlib
+
+    return JSONResponse(
+        {
+            "base": tuner.base.model_dump(mode="json"),
+            "objects": names(),
+            "media": {name: asdict(medium) for name, medium in MEDIA.items()},
+            "views": dict(LOOKS),
+            "effects": list(EFFECTS),
+            "folder": str(tuner.folder),
+            "shaders": str(tuner.shaders),
+            "version": __version__,
+        }
+    )
+
+
+@router.websocket("/socket")
+async def socket(connection: WebSocket, tuner: AtTuner) -> None:
+    """Wishes in, frames out."""
+    await Viewer(tuner, connection).watch()
+
+
+def unfit(request: Request, error: Exception) -> Response:
+    """What a user can mend."""
+    return JSONResponse({"error": str(error)}, 422)
+
+
+def not_understood(request: Request, error: Exception) -> Response:
+    """A body or an address that is not of the expected form."""
+    assert isinstance(error, RequestValidationError)
+    first = error.errors()[0]
+    where = ".".join(str(part) for part in first["loc"])
+    return JSONResponse({"error": f"{where}: {first['msg']}."}, 422)
+
+
+def no_page(request: Request, error: Exception) -> Response:
+    """No such address, or not with this method."""
+    assert isinstance(error, HTTPException)
+    return JSONResponse({"error": "There is no such page."}, error.status_code, error.headers)
+
+
+def nobody(request: Request, error: Exception) -> Response:
+    """The browser has left; nobody reads this."""
+    return Response(status_code=499)
+
+
+def unexpected(request: Request, error: Exception) -> Response:
+    """A fault of ours, which is logged on its way up."""
+    return JSONResponse({"error": "Something went wrong here, a fault of the program; its terminal tells more."}, 500)

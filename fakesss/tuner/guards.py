@@ -1,0 +1,128 @@
+"""Who is let in: the address of a tuner holds a secret, and no other site's page may use it (docs/threat-model.md).
+
+Plain ASGI, around everything. A page of another site cannot read the secret; if it learned it, it could still neither
+post nor open a WebSocket (Origin), nor reach the tuner under a name of its own that points here (Host).
+"""
+
+import hmac
+import ipaddress
+import re
+import socket
+from collections.abc import Callable
+from urllib.parse import urlsplit
+
+from starlette.datastructures import Headers, MutableHeaders
+from starlette.responses import JSONResponse, RedirectResponse, Response
+from starlette.types import ASGIApp, Message, Receive, Scope, Send
+
+OWN_NAMES = ("localhost", "127.0.0.1", "[::1]")
+EVERYWHERE = ("0.0.0.0", "::")
+HOST = re.compile(r"(?P<name>[A-Za-z0-9.-]+|\[[0-9A-Fa-f:.]+\])(:[0-9]{1,5})?")
+
+POLICY = (
+    "default-src 'none'; script-src 'self'; style-src 'self'; img-src 'self' blob:; connect-src 'self' ws://{host}; "
+    "form-action 'none'; base-uri 'none'; frame-ancestors 'none'"
+)
+HEADERS = {
+    "X-Content-Type-Options": "nosniff",
+    "Referrer-Policy": "same-origin",  # the address holds the secret; `no-referrer` would blank the Origin of our posts
+    "Cross-Origin-Opener-Policy": "same-origin",
+    "Cross-Origin-Resource-Policy": "same-origin",
+    "Permissions-Policy": "camera=(), geolocation=(), microphone=()",
+    "X-Robots-Tag": "noindex, nofollow",
+}
+BODY_LIMIT = 1 << 20  # bytes of a post; 32 lights are 16 KB
+UPLOAD = "/object"  # has a limit of its own
+
+
+class Guards:
+    """Refuses who does not know `token` or comes from elsewhere; what is inside sees paths without the token."""
+
+    def __init__(self, app: ASGIApp, token: str, host: str) -> None:
+        self.app, self.token, self.is_ours = app, token.encode(), known_names(host)
+
+    async def __call__(self, scope: Scope, receive: Receive, send: Send) -> None:
+        """Serve one request or WebSocket, or refuse it with one sentence."""
+        if scope["type"] == "lifespan":
+            await self.app(scope, receive, send)
+            return
+        headers = Headers(scope=scope)
+        first, slash, path = scope["path"].removeprefix("/").partition("/")
+        send = with_headers(send, headers.get("host", ""), is_kept=path.startswith("static/"))
+        if refusal := self.refusal(scope, headers, first):
+            await refusal(scope, receive, send)
+        elif not slash:
+            await RedirectResponse(f"/{first}/")(scope, receive, send)  # addresses in the page are relative to it
+        else:
+            inside = {**scope, "path": f"/{path}", "raw_path": f"/{path}".encode()}
+            await self.app(inside, receive, send)
+
+    def refusal(self, scope: Scope, headers: Headers, first: str) -> Response | None:
+        """What is said to who may not come in."""
+        hosts = headers.getlist("host")
+        name = HOST.fullmatch(hosts[0]) if len(hosts) == 1 else None
+        if not name or not self.is_ours(name["name"].lower()):
+            return refused(421, "The tuner is not served under this name; start it with --host NAME to allow it.")
+        if not hmac.compare_digest(first.encode("utf-8", "surrogatepass"), self.token):
+            return refused(404, "There is no such page; use the address that `fakesss tune` printed.")
+        posts = scope["type"] == "websocket" or scope["method"] not in ("GET", "HEAD")
+        if posts and not is_same_origin(headers):
+            return refused(403, "This request came from another site and was refused.")
+        if scope["type"] == "http" and not scope["path"].endswith(UPLOAD) and too_long(headers):
+            return refused(413, f"A request has {BODY_LIMIT} bytes at most.")
+        return None
+
+
+def refused(status: int, sentence: str) -> Response:
+    """An answer that a program can read as well."""
+    return JSONResponse({"error": sentence}, status)
+
+
+def known_names(host: str) -> Callable[[str], bool]:
+    """Whether a name in lower case, as it stands in a Host header, is one of ours when listening on `host`."""
+    given = f"[{host}]" if ":" in host else host
+    ours = {*OWN_NAMES, given.lower()}
+    if host not in EVERYWHERE:
+        return ours.__contains__
+    ours |= {socket.gethostname().lower(), socket.getfqdn().lower()}
+    # an address is no name that somebody else could point here
+    return lambda name: name in ours or is_address(name)
+
+
+def is_address(name: str) -> bool:
+    """Whether it is an IP address, version 6 in brackets."""
+    try:
+        ipaddress.ip_address(name.removeprefix("[").removesuffix("]"))
+    except ValueError:
+        return False
+    return True
+
+
+def is_same_origin(headers: Headers) -> bool:
+    """Whether a post or a WebSocket comes from our own page, or from a program, which sends no Origin."""
+    origin = headers.get("origin")
+    try:
+        return origin is None or urlsplit(origin).netloc == headers.get("host")
+    except ValueError:  # no address at all, such as http://[
+        return False
+
+
+def too_long(headers: Headers) -> bool:
+    """Whether more is announced than anything here is long."""
+    length = headers.get("content-length", "0")
+    return not length.isdecimal() or int(length) > BODY_LIMIT
+
+
+def with_headers(send: Send, host: str, is_kept: bool) -> Send:
+    """`send` that adds our headers. `is_kept`: a browser may keep the answer, but must ask whether it is the same."""
+    policy = POLICY.format(host=host if HOST.fullmatch(host) else "localhost")
+    ours = {**HEADERS, "Cache-Control": "no-cache" if is_kept else "no-store", "Content-Security-Policy": policy}
+
+    async def send_with_headers(message: Message) -> None:
+        if message["type"] in ("http.response.start", "websocket.http.response.start"):
+            headers = MutableHeaders(scope=message)
+            for name, value in ours.items():
+                headers.setdefault(name, value)
+        await send(message)
+
+    return send_with_headers

@@ -1,0 +1,46 @@
+"""How large a picture is drawn while something moves, so that it keeps up with the hand."""
+
+from dataclasses import dataclass
+
+BUDGET_MS = 50.0  # for drawing a frame; with encoding, travel and showing it stays below 100 ms
+SCALES = (1, 2, 4)  # whole, half and quarter width and height
+WORTH = 0.8  # a smaller picture must take no more than this share of the time, or it only looks worse
+
+
+@dataclass
+class Pace:
+    """Which scale to draw at, from how long the last moving and the last still picture took.
+
+    Time is taken to be a + b * samples: the vertices cost the same at every size.
+    """
+
+    still: tuple[int, float] | None = None  # samples, ms
+    moving: tuple[int, float] | None = None
+
+    def note(self, moving: bool, samples: int, ms: float) -> None:
+        """A picture was drawn."""
+        if moving:
+            self.moving = samples, ms
+        else:
+            self.still = samples, ms
+
+    def scale(self, samples: int) -> int:
+        """The scale for a picture that has `samples` at full size, one a pixel."""
+        fixed, each = self.model()
+        chosen = SCALES[0]
+        for scale in SCALES[1:]:
+            larger, smaller = (fixed + each * samples / side**2 for side in (chosen, scale))
+            if larger <= BUDGET_MS or smaller > WORTH * larger:
+                break
+            chosen = scale
+        return chosen
+
+    def model(self) -> tuple[float, float]:
+        """a and b, in ms and ms a sample; both 0 while nothing is known."""
+        if self.moving is None or self.still is None:
+            known = self.moving or self.still
+            return (0.0, known[1] / known[0]) if known else (0.0, 0.0)
+        (few, fast), (many, slow) = sorted((self.moving, self.still))
+        each = max(slow - fast, 0.0) / (many - few) if many > few else 0.0
+        each = min(each, fast / few)
+        return fast - each * few, each

@@ -1,0 +1,97 @@
+"""What takes long to make (meshes, occlusion) is made on a thread of its own; meanwhile something like it is drawn."""
+
+import asyncio
+from collections import Counter
+from collections.abc import Hashable, Iterator, Mapping
+from concurrent.futures import ThreadPoolExecutor
+from dataclasses import dataclass, replace
+from typing import Any
+
+from fakesss.renderer import Renderer
+from fakesss.scene import Scene
+from fakesss.tuner.frames import Asked, Drawn, draw
+from fakesss.tuner.studio import Unprepared
+
+Changes = Mapping[str, Any]
+
+
+@dataclass(frozen=True)
+class Attempt:
+    """What came of a wish: a picture or none, what it lacks, and a sentence if something stands in for that."""
+
+    drawn: Drawn | None
+    missing: Unprepared | None = None
+    stand_in: str = ""
+
+
+def attempt(renderer: Renderer, asked: Asked, last: Scene | None) -> Attempt:
+    """The picture that is asked for; while something of it is not made yet, one with a stand-in.
+
+    `last` is the last scene of which everything was at hand.
+    """
+    scene, missing, sentence = asked.scene, None, ""
+    ways: dict[str, Iterator[tuple[Changes, str]]] = {}
+    while True:
+        try:
+            return Attempt(draw(renderer, replace(asked, scene=scene)), missing, sentence)
+        except Unprepared as lack:
+            missing = missing or lack
+            changes, words = next(ways.setdefault(lack.kind, stand_ins(lack.kind, asked.scene, last)), ({}, ""))
+        if not changes:
+            return Attempt(None, missing)
+        scene = scene.replace(changes, "tuner")
+        sentence = sentence or f"{in_words(missing.kind, asked.scene)} is not made yet; {words}."
+
+
+def in_words(kind: str, scene: Scene) -> str:
+    """What is being made."""
+    return {
+        "mesh": f'The object "{scene.object}"',
+        "solid": f'What is known of "{scene.object}"',
+        "occlusion": f"Occlusion with {scene.occlusion.rays} rays a vertex",
+        "local_thickness": f"Local thickness with {scene.layers.rays} rays a vertex",
+        "coarse_mesh": f"A second layer of {scene.layers.faces} faces",
+    }.get(kind, kind)
+
+
+def stand_ins(kind: str, scene: Scene, last: Scene | None) -> Iterator[tuple[Changes, str]]:
+    """Changes of `scene` by which it may do without what is missing, the nearest to it first, each in words."""
+    if kind == "occlusion":
+        if last and last.occlusion != scene.occlusion:
+            fields = {"occlusion.rays": last.occlusion.rays, "occlusion.sampling": last.occlusion.sampling}
+            yield fields, f"drawn with {last.occlusion.rays}"
+        yield {"occlusion.enabled": False}, "drawn without"
+    elif kind == "local_thickness":
+        if last and last.material.thickness == "local" and last.layers != scene.layers:
+            yield {"layers.rays": last.layers.rays, "layers.reach": last.layers.reach}, "drawn with the last one"
+        yield {"material.thickness": "first-interval"}, "drawn with the thickness along the line of sight"
+    elif kind == "coarse_mesh":
+        yield {"layers.faces": None}, "drawn with all faces"
+    elif last and last.object != scene.object:
+        yield {"object": last.object}, f'"{last.object}" is drawn meanwhile'
+
+
+class Preparing:
+    """Makes one thing after the other; who asks for the same shares it, what nobody waits for any more is dropped."""
+
+    def __init__(self) -> None:
+        self._thread = ThreadPoolExecutor(1, "preparing")
+        self._under_way: dict[Hashable, asyncio.Future[Any]] = {}
+        self._waiting: Counter[Hashable] = Counter()
+
+    async def __call__(self, missing: Unprepared) -> Any:
+        """What `missing` lacks."""
+        key = missing.key
+        if key not in self._under_way:
+            self._under_way[key] = asyncio.get_running_loop().run_in_executor(self._thread, missing.make)
+        self._waiting[key] += 1
+        try:
+            return await asyncio.shield(self._under_way[key])
+        finally:
+            self._waiting[key] -= 1
+            if not self._waiting[key]:
+                self._under_way.pop(key).cancel()  # what has begun goes on to its end, and is in the cache then
+
+    def close(self) -> None:
+        """Begin nothing more."""
+        self._thread.shutdown(wait=False, cancel_futures=True)

@@ -1,0 +1,93 @@
+"""Running the tuner: a socket of our own, uvicorn on it, and its address, which holds the secret."""
+
+import contextlib
+import os
+import secrets
+import sys
+import threading
+import time
+from collections.abc import Callable, Iterator
+from pathlib import Path
+from typing import Any
+
+import uvicorn
+from starlette.types import ASGIApp
+
+from fakesss.listening import address_of, listening
+from fakesss.scene import Scene
+from fakesss.shader_source import GLSL
+from fakesss.tuner.app import create_app
+from fakesss.tuner.guards import Guards
+from fakesss.tuner.state import Tuner, WriteStudy
+
+TOKEN_BYTES = 16
+FINISH_S = 0.3  # how long requests under way are waited for at the end
+MESSAGE_LIMIT = 1 << 20  # bytes of one wish; 32 lights are 16 KB
+INTERRUPTED = 130  # the shell's exit status for Ctrl-C
+
+
+def serve(
+    scene: Scene,
+    host: str,
+    port: int,
+    write_study: WriteStudy,
+    announce: Callable[[str], None],
+) -> None:
+    """Tune `scene` until interrupted. `announce` is told the address, with its secret, as soon as it answers.
+
+    Raises `BadInput` if the port is taken.
+    """
+    tuner = Tuner(scene, Path.cwd(), GLSL, write_study)
+    with listening(host, port) as listener:
+        token = secrets.token_urlsafe(TOKEN_BYTES)
+        server = uvicorn.Server(configured(Guards(create_app(tuner), token, host)))
+        announce(f"{address_of(listener)}/{token}/")
+        try:
+            server.run(sockets=[listener])
+        finally:
+            if not tuner.close():
+                sys.stdout.flush()
+                sys.stderr.flush()
+                os._exit(INTERRUPTED)  # a picture that takes minutes would keep the process for as long
+
+
+@contextlib.contextmanager
+def tuned(
+    scene: Scene,
+    folder: Path,
+    shaders: Path = GLSL,
+    write_study: WriteStudy | None = None,
+    port: int = 0,
+    token: str = "",
+) -> Iterator[str]:
+    """The same on this machine only, in a thread for as long as the block runs; gives its address."""
+    tuner = Tuner(scene, folder, shaders, write_study)
+    token = token or secrets.token_urlsafe(TOKEN_BYTES)
+    with listening("127.0.0.1", port) as listener:
+        server = uvicorn.Server(configured(Guards(create_app(tuner), token, "127.0.0.1")))
+        thread = threading.Thread(target=server.run, kwargs={"sockets": [listener]})
+        thread.start()
+        try:
+            while not server.started and thread.is_alive():
+                time.sleep(0.01)
+            yield f"{address_of(listener)}/{token}/"
+        finally:
+            server.should_exit = True
+            thread.join()
+            tuner.close()
+
+
+def configured(app: ASGIApp) -> uvicorn.Config:
+    """No access log: addresses hold the secret. Frames are compressed already."""
+    settings: dict[str, Any] = {
+        "ws": "websockets-sansio",
+        "ws_max_size": MESSAGE_LIMIT,
+        "ws_per_message_deflate": False,
+        "access_log": False,
+        "log_level": "warning",
+        "proxy_headers": False,
+        "server_header": False,
+        "lifespan": "on",
+        "timeout_graceful_shutdown": FINISH_S,
+    }
+    return uvicorn.Config(app, **settings)

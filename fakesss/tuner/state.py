@@ -1,0 +1,110 @@
+"""What all of a tuner's endpoints work with."""
+
+from collections.abc import Awaitable, Callable
+from dataclasses import dataclass, field
+from functools import cached_property, partial
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated, Any, TypeVar
+
+from fastapi import Depends
+from starlette.requests import HTTPConnection
+
+from fakesss.mesh import Mesh
+from fakesss.problem import BadInput
+from fakesss.renderer import Renderer
+from fakesss.scene import Scene
+from fakesss.shapes import is_mesh_file
+from fakesss.tuner.frames import MOST_SAMPLES, Asked, Drawn, draw, samples
+from fakesss.tuner.preparing import Preparing
+from fakesss.tuner.studio import Studio, Unprepared
+from fakesss.tuner.uploads import Uploads
+from fakesss.tuner.wishes import Settings
+
+if TYPE_CHECKING:
+    from fakesss.tuner.viewer import Viewer
+
+WriteStudy = Callable[..., Any]
+Result = TypeVar("Result")
+
+
+async def always() -> bool:
+    return True
+
+
+class Gone(Exception):
+    """Nobody waits for this picture any more."""
+
+
+@dataclass(eq=False)
+class Tuner:
+    """A scene to start from, what draws, and who looks."""
+
+    base: Scene
+    folder: Path  # files are written here
+    shaders: Path
+    write_study: WriteStudy | None = None
+    viewers: "set[Viewer]" = field(default_factory=set)
+
+    @cached_property
+    def studio(self) -> Studio:
+        return Studio(self.shaders)
+
+    @cached_property
+    def preparing(self) -> Preparing:
+        return Preparing()
+
+    @cached_property
+    def uploads(self) -> Uploads:
+        return Uploads()
+
+    def scene(self, settings: Settings) -> Scene:
+        """The scene of these settings; `BadInput` if it is none, or may not be drawn here."""
+        scene = settings.scene(self.base)
+        known = scene.object == self.base.object or self.uploads.has(scene.object)
+        if is_mesh_file(scene.object) and not known:
+            raise BadInput(f'object "{scene.object}": is no file of this tuner; load it with its Load object button')
+        if samples(scene) > MOST_SAMPLES:
+            width, height = scene.size
+            raise BadInput(
+                f"size {width}x{height} with supersampling {scene.supersampling}: is more than is drawn here while "
+                "somebody waits; lower one of them, or save the scene and draw it with `fakesss render`"
+            )
+        return scene
+
+    async def prepare(self, missing: Unprepared) -> None:
+        """Make what a picture lacked."""
+        await self.studio.keep(missing.key, await self.preparing(missing))
+
+    async def picture(self, asked: Asked, is_wanted: Callable[[], Awaitable[bool]]) -> Drawn:
+        """The picture itself, nothing standing in; `Gone` if by its turn nobody wants it any more."""
+        return await self._made(partial(draw, asked=asked), is_wanted)
+
+    async def mesh(self, name: str) -> Mesh:
+        """The object of this name, loaded."""
+        scene = self.base.replace({"object": name}, "tuner")
+        return await self._made(lambda renderer: renderer.plan(scene)[1], always)
+
+    async def _made(self, work: Callable[[Renderer], Result], is_wanted: Callable[[], Awaitable[bool]]) -> Result:
+        while True:
+            async with self.studio.turn:
+                if not await is_wanted():
+                    raise Gone
+                try:
+                    return await self.studio.do(work)
+                except Unprepared as lack:
+                    missing = lack
+            await self.prepare(missing)
+
+    def close(self) -> bool:
+        """Stop; whether everything has come to its end."""
+        self.preparing.close()
+        return self.studio.close()
+
+
+def tuner_of(connection: HTTPConnection) -> Tuner:
+    """The tuner that an endpoint belongs to."""
+    tuner: Tuner = connection.app.state.tuner
+    return tuner
+
+
+AtTuner = Annotated[Tuner, Depends(tuner_of)]

@@ -1,0 +1,82 @@
+"""The one thread that draws: OpenGL contexts belong to a thread, so viewers take turns."""
+
+import asyncio
+from collections.abc import Callable, Hashable
+from concurrent.futures import ThreadPoolExecutor
+from pathlib import Path
+from typing import Any, TypeVar
+
+from fakesss.recent import Recent
+from fakesss.renderer import Renderer, shared_renderer
+from fakesss.shader_source import GLSL
+
+BAKES_KEPT = 32  # meshes, whether they are solid, and their occlusion: those of several viewers
+LEAVE_S = 0.5  # how long a picture that is being drawn is waited for at the end
+
+Result = TypeVar("Result")
+
+
+class Unprepared(Exception):
+    """A picture needs what takes long to make: `make()` makes it, on any thread, for `Studio.keep`."""
+
+    def __init__(self, key: Hashable, make: Callable[[], Any]) -> None:
+        super().__init__(str(key))
+        self.key, self.make = key, make
+
+    @property
+    def kind(self) -> str:
+        """The baked resource's name, or "solid"."""
+        return str(self.key[0]) if isinstance(self.key, tuple) else ""
+
+
+class AtHand(Recent[Any]):
+    """Bakes that were made elsewhere: what is missing is not made here, where others wait for pictures."""
+
+    def get(self, key: Hashable, make: Callable[[], Any]) -> Any:
+        """The value of `key`, or `Unprepared`."""
+        if key not in self.values:
+            raise Unprepared(key, make)
+        return super().get(key, make)
+
+
+class Studio:
+    """A renderer on a thread of its own. `glsl`: the folder of the shaders."""
+
+    def __init__(self, glsl: Path = GLSL) -> None:
+        self.glsl = glsl
+        self.turn = asyncio.Lock()  # first come, first served; whoever leaves while waiting is passed over
+        self._thread = ThreadPoolExecutor(1, "studio", self._open)
+
+    def _open(self) -> None:
+        renderer = shared_renderer()
+        renderer.bakes = AtHand(BAKES_KEPT)
+        renderer.gpu.programs.root = self.glsl
+
+    async def do(self, work: Callable[[Renderer], Result]) -> Result:
+        """`work(renderer)` on the thread that draws, after what was asked of it before."""
+        return await asyncio.get_running_loop().run_in_executor(self._thread, lambda: work(shared_renderer()))
+
+    async def keep(self, key: Hashable, value: Any) -> None:
+        """What an `Unprepared` picture lacked is at hand from now on."""
+        await self.do(lambda renderer: Recent.get(renderer.bakes, key, lambda: value))
+
+    async def read_shaders_again(self) -> None:
+        """Forget every compiled program, and what programs drew."""
+        await self.do(forget_programs)
+
+    def close(self) -> bool:
+        """Free the context; False where a picture is still being drawn after `LEAVE_S`, which nothing can stop."""
+        released = self._thread.submit(lambda: shared_renderer().gpu.context.release())
+        self._thread.shutdown(wait=False)
+        try:
+            released.result(LEAVE_S)
+        except TimeoutError:
+            return False
+        return True
+
+
+def forget_programs(renderer: Renderer) -> None:
+    """What compiled shaders are, and what they drew for later pictures."""
+    renderer.gpu.drawn.clear()
+    renderer.gpu.programs.compiled.clear()
+    renderer.gpu.programs.defaults.clear()
