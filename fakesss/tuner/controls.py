@@ -209,8 +209,8 @@ CAMERA = (
         "Lens",
         (
             Control("camera.field_of_view", "field of view", 5, 120, 1, unit="°"),
-            Control("camera.near", "near plane", 0.01, 20, 0.01, log=True, unit="radii", equation="3.4"),
-            Control("camera.far", "far plane", 0.1, 40, 0.01, log=True, unit="radii", equation="3.4"),
+            Control("camera.near", "near plane", 0.01, 20, 0.01, log=True, unit="radii"),
+            Control("camera.far", "far plane", 0.1, 40, 0.01, log=True, unit="radii"),
         ),
     ),
 )

@@ -12,7 +12,7 @@ from fakesss.tuner.controls import EFFECTS, GROUPS
 
 HERE = Path(__file__).parent
 PANELS = {"lights": "Lights", "material": "Material", "camera": "Camera", "shader": "Shader", "sweep": "Sweep"}
-SHEETS = ("tuner.css", "stage.css", "legend.css", "compare.css", "sweep.css")
+LAYOUT = "tuner.css"  # before the sheets of single parts
 
 environment = Environment(
     loader=FileSystemLoader(HERE / "templates"),
@@ -28,7 +28,7 @@ def page(base: Scene) -> str:
     return environment.get_template("tuner.html").render(
         base=base,
         panels=PANELS,
-        sheets=[sheet for sheet in SHEETS if (HERE / "static" / sheet).exists()],
+        sheets=[LAYOUT, *sorted({sheet.name for sheet in (HERE / "static").glob("*.css")} - {LAYOUT})],
         groups=GROUPS,
         effects=EFFECTS,
         objects=names(),

@@ -48,7 +48,7 @@ export class Settings extends EventTarget {
   // The same in other settings: those of a pin, say.
   valueIn({ changes }, path) {
     const [field, within] = parts(path);
-    return structuredClone(walk(field in changes ? changes[field] : walk(this.start.base, field.split(".")), within));
+    return structuredClone(walk(field in changes ? changes[field] : this.#untouched(changes, field), within));
   }
 
   // The value in the scene that the tuner was started with.
@@ -57,7 +57,15 @@ export class Settings extends EventTarget {
   }
 
   isChanged(path) {
-    return !isSame(this.value(path), this.original(path));
+    const [field, within] = parts(path);
+    return !isSame(this.value(path), walk(this.#untouched(this.#current.changes, field), within));
+  }
+
+  // The quality that the field has its value from, which nobody set; "" if it has it from the scene.
+  filledBy(path) {
+    const { changes } = this.#current;
+    const quality = changes.quality === undefined ? this.start.base.quality : changes.quality;
+    return quality && !(path in changes) && this.#filled(changes, path, quality) ? quality : "";
   }
 
   effect(name) {
@@ -86,7 +94,10 @@ export class Settings extends EventTarget {
   reset(...paths) {
     this.#change(null, (next) => {
       if (!paths.length) Object.assign(next, { changes: {}, effects: {} });
-      for (const path of paths) this.#put(next, path, this.original(path));
+      for (const path of paths) {
+        if (parts(path)[1].length) this.#put(next, path, this.original(path));
+        else delete next.changes[path];
+      }
     });
   }
 
@@ -126,8 +137,21 @@ export class Settings extends EventTarget {
       const whole = this.valueIn(next, field);
       walk(whole, within.slice(0, -1))[within.at(-1)] = value;
       this.#put(next, field, whole);
-    } else if (isSame(value, this.original(field))) delete next.changes[field];
+    } else if (isSame(value, this.#untouched(next.changes, field))) delete next.changes[field];
     else next.changes[field] = structuredClone(value);
+  }
+
+  // What a field is that was left alone: as the quality fills it that is asked for, or as it was at the start.
+  #untouched(changes, field) {
+    const quality = changes.quality === undefined ? this.start.base.quality : changes.quality;
+    const knob = this.#filled(changes, field, quality) ?? this.#filled({}, field, null);
+    return knob && field !== "quality" ? knob[field] : this.original(field);
+  }
+
+  // The fields that a quality fills together with this one; not if another of them was set.
+  #filled(changes, field, quality) {
+    const isFilled = (knob) => field in knob && Object.keys(knob).every((path) => path === field || !(path in changes));
+    return this.start.qualities[quality ?? ""]?.find(isFilled);
   }
 
   #change(gesture, change) {
