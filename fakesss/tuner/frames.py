@@ -55,7 +55,7 @@ class Header(TypedDict):
     faces: int
     vertices: int
     stand_in: str  # a sentence if this is not quite what was asked for
-    matrix: list[float]  # (4, 4) row by row: world to clip space
+    matrix: list[float] | None  # (4, 4) row by row: world to clip space; None of a drawing, which has no camera
     box: list[list[float]]  # the object's smallest and largest x, y, z, sphere radii
     note: str  # what a view shows
     legend: dict[str, Any] | None  # of a view's colours: `looks.Legend`
@@ -105,7 +105,7 @@ def draw(renderer: Renderer, asked: Asked) -> Drawn:
     """The picture, or the view of it, that is asked for. Raises `BadInput`, `ShaderError` and `studio.Unprepared`."""
     started = time.perf_counter()
     scene = asked.drawn
-    note, legend = "", None
+    note, legend, has_camera = "", None, True
     if asked.view == PICTURE:
         rendering = renderer.render(scene, timed=not asked.moving, forced=asked.forced)
         plan, mesh, times = rendering.plan, rendering.mesh, {one["name"]: one["gpu_ms"] for one in rendering.passes}
@@ -113,10 +113,11 @@ def draw(renderer: Renderer, asked: Asked) -> Drawn:
         image, kind = encoded(rendering, asked.moving)
         warnings = rendering.notes if asked.moving else rendering.warnings
     else:
-        from fakesss.tuner.looks import look  # loads matplotlib, which pictures never need
+        from fakesss.tuner.looks import DRAWINGS, look  # loads matplotlib, which pictures never need
 
         plan, mesh = renderer.plan(scene, asked.forced)
         pixels, note, legend = look(scene, asked.view, asked.moving)
+        has_camera = asked.view not in DRAWINGS
         times, warnings = {}, mesh.repairs
         drawn = time.perf_counter()
         image, kind = (jpeg(pixels), "image/jpeg") if asked.moving else (encode_png8(pixels), "image/png")
@@ -131,7 +132,7 @@ def draw(renderer: Renderer, asked: Asked) -> Drawn:
         "reasons": reasons(scene, asked.forced),
         "warnings": list(warnings),
         **facts_of(mesh),
-        "matrix": world_to_clip(asked.scene),
+        "matrix": world_to_clip(asked.scene) if has_camera else None,
         "note": note,
         "legend": legend,
         "scene_sha256": scene.sha256(),

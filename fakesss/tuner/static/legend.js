@@ -5,7 +5,7 @@ const HEIGHT = 10;
 
 export function start({ stage }) {
   const place = Object.assign(document.createElement("p"), { id: "legend", ariaHidden: "true", hidden: true });
-  document.getElementById("caption").after(place);
+  document.getElementById("view").after(place); // in a line that is there anyway: the picture stays where it is
   let shown = null;
   for (const event of ["frame", "live", "fit"]) stage.addEventListener(event, show);
 
