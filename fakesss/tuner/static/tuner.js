@@ -1,5 +1,6 @@
 // Wires the page's parts, and does nothing else.
 import * as animate from "./animate.js";
+import * as compare from "./compare.js";
 import { Connection } from "./connection.js";
 import * as controls from "./controls.js";
 import * as effects from "./effects.js";
@@ -25,5 +26,5 @@ context.say = messages.start(context);
 context.stage = stage.start(context);
 context.animation = animate.start(context);
 context.overlay = overlay.start(context);
-for (const part of [gestures, status, legend]) part.start(context);
+for (const part of [gestures, status, legend, compare]) part.start(context);
 for (const part of [tabs, hint, lights, controls, effects, media, objects, program, switches]) part.start(context);
