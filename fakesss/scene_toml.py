@@ -23,20 +23,21 @@ COMMENTS_AT = 34  # column, where the entries of a table are shorter
 Entry = tuple[str, str]  # `backlight = 0.8`, and what it is
 
 
-def scene_toml(scene: Scene, folder: Path) -> str:
-    """The text of a scene's file that is to stand in `folder`; a mesh is named from there."""
+def scene_toml(scene: Scene, folder: Path | None = None) -> str:
+    """The text of a scene's file that is to stand in `folder`, or anywhere; a mesh is named so that it is found."""
     named = scene.model_copy(update={"object": object_from(folder, scene.object)})
     return HEAD + scene_tables(named)
 
 
-def object_from(folder: Path, name: str) -> str:
+def object_from(folder: Path | None, name: str) -> str:
     """A scene's `object` as a file in `folder` has to name it: relative if it lies within, otherwise absolute."""
     from fakesss.shapes import is_mesh_file  # slow to import, and most scenes are of built-in objects
 
     if not is_mesh_file(name):
         return name
-    path, within = Path(name).resolve(), folder.resolve()
-    relative = path.relative_to(within).as_posix() if path.is_relative_to(within) else ""
+    path = Path(name).resolve()
+    within = folder.resolve() if folder else None
+    relative = path.relative_to(within).as_posix() if within and path.is_relative_to(within) else ""
     return relative if is_mesh_file(relative) else path.as_posix()  # a file called sphere would be the built-in one
 
 

@@ -18,6 +18,7 @@ from stimuli.design import stimuli_of
 from stimuli.study import Study, check_levels_are_values
 
 NAME = "study.toml"
+HASH = re.compile(r"^[0-9a-f]{64}\.")  # what the name of a file that was brought to the tuner is: it says nothing
 
 
 def write_sweep(scene: Scene, title: str, folder: Path, factors: Sequence[Mapping[str, Any]]) -> Path:
@@ -81,7 +82,7 @@ def names_beside(objects: Sequence[str]) -> dict[str, str]:
     """The name that each mesh file among `objects` gets beside the study: its own, numbered where two have the same."""
     found: dict[str, str] = {}
     for source in dict.fromkeys(filter(is_mesh_file, objects)):
-        plain = re.sub(r"[^\w.-]", "-", Path(source).name)
+        plain = re.sub(r"[^\w.-]", "-", HASH.sub("object.", Path(source).name))
         found[source] = next(name for name in numbered(plain) if name not in found.values())
     return found
 
