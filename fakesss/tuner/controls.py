@@ -227,7 +227,7 @@ SHADER = (
     Group(
         "Blur",
         (
-            Control("blur.enabled", "soften the thickness"),
+            Control("blur.enabled", "blur"),
             Control("blur.step", "step", 0.0005, 0.05, 0.0005, log=True, unit="diameters", needs=(BLURRED,)),
             Control("blur.kernel", "kernel", needs=(BLURRED,)),
             Control("blur.depth_range", "depth range", 0.005, 1, 0.005, log=True, unit="diameters", needs=(BLURRED,)),
@@ -260,7 +260,7 @@ SHADER = (
             Control("size", "size", 64, 1024, 16, unit="pixels", parts=("width", "height")),
             Control("exposure", "exposure", 0.1, 4, 0.05, log=True),
             Control("background", "background", 0, 1),
-            Control("alpha", "leave the background out"),
+            Control("alpha", "no background"),
         ),
     ),
 )
@@ -273,7 +273,7 @@ NO_CONTROL: Mapping[str, str] = {
 }
 
 EFFECTS: Mapping[str, str] = {
-    "backlight": "light from behind",
+    "backlight": "backlight",
     "blur": "blur",
     "occlusion": "ambient occlusion",
     "diffuse": "diffuse term",

@@ -1,6 +1,9 @@
 // What a control is for, at the foot of the panel: for the one under the pointer, else the one that has the focus. The same
 // words describe the control to a screen reader (aria-describedby).
 
+const GENERAL =
+  "Point at a name to read what it does. Arrow keys step, with Shift ten times as far; a double-click on a name or slider resets.";
+
 export function start() {
   const hint = document.getElementById("hint");
   const panel = document.getElementById("panel");
@@ -8,7 +11,7 @@ export function start() {
 
   const tipOf = (element) => element?.closest?.("#panel .control, #panel [data-tip]")?.querySelector(".tip")?.textContent;
   const show = () => {
-    hint.textContent = tipOf(pointed) ?? tipOf(document.activeElement) ?? "";
+    hint.textContent = tipOf(pointed) ?? tipOf(document.activeElement) ?? GENERAL;
   };
 
   panel.addEventListener("pointerover", ({ target }) => {
@@ -21,4 +24,5 @@ export function start() {
   });
   panel.addEventListener("focusin", show);
   panel.addEventListener("focusout", show);
+  show();
 }

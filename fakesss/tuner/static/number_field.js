@@ -32,6 +32,7 @@ export class NumberField {
     this.#value = value;
     if (this.slider) {
       this.slider.value = this.scale.place(value);
+      this.slider.style.setProperty("--at", `${this.scale.place(value) / 10}%`); // the track's bright part
       this.slider.setAttribute("aria-valuetext", `${written(value)} ${unit}`.trim());
     }
     if (!this.#isTyping) this.typed.value = written(value);

@@ -1,6 +1,6 @@
 // A number's limits, its place on a slider, and how it is read and written.
 
-const DIGITS = 5; // shown
+const DIGITS = 5; // shown; of small numbers, whose zeros take room, one fewer
 const LOG_STEPS = 100; // key presses from one end of a logarithmic slider to the other
 const PLACES = 1000; // on a slider
 
@@ -64,5 +64,5 @@ export class Scale {
 }
 
 export function written(value) {
-  return value === null || value === undefined ? "" : String(Number(value.toPrecision(DIGITS)));
+  return value === null || value === undefined ? "" : String(Number(value.toPrecision(Math.abs(value) < 0.1 ? DIGITS - 1 : DIGITS)));
 }
