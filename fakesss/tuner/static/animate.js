@@ -78,7 +78,7 @@ class Animation extends EventTarget {
 
   // Along a great circle to a direction that any is as likely to be as any other, then to the next.
   #wander(seconds) {
-    const paths = [picked.path("azimuth"), picked.path("elevation")];
+    const paths = [picked.path("light.azimuth"), picked.path("light.elevation")];
     const light = paths.map((path) => this.settings.value(path));
     if (!this.#path || this.#path.gone >= this.#path.angle || light.some((angle, i) => angle !== this.#path.written[i])) {
       const [from, to] = [vector(...light), anyDirection()];

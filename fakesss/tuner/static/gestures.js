@@ -59,9 +59,9 @@ class Moves {
   }
 
   light(right, up) {
-    const azimuth = wrapped(this.settings.value(picked.path("azimuth")) + right);
-    const elevation = upright(this.settings.value(picked.path("elevation")) + up);
-    this.settings.setMany({ [picked.path("azimuth")]: azimuth, [picked.path("elevation")]: elevation }, "light");
+    const azimuth = wrapped(this.settings.value(picked.path("light.azimuth")) + right);
+    const elevation = upright(this.settings.value(picked.path("light.elevation")) + up);
+    this.settings.setMany({ [picked.path("light.azimuth")]: azimuth, [picked.path("light.elevation")]: elevation }, "light");
   }
 
   zoom(factor) {
@@ -183,7 +183,7 @@ function inWords(settings) {
   const of = (path) => Math.round(settings.value(path));
   return (
     `Camera ${of("camera.azimuth")}° around, ${of("camera.elevation")}° up; ` +
-    `light ${of(picked.path("azimuth"))}° around, ${of(picked.path("elevation"))}° up.`
+    `light ${of(picked.path("light.azimuth"))}° around, ${of(picked.path("light.elevation"))}° up.`
   );
 }
 

@@ -49,7 +49,7 @@ export class Overlay {
     Object.assign(this.#canvas.style, { left, top, width, height });
     this.#canvas.width = Math.round(parseFloat(width) * devicePixelRatio) || 1; // clears it
     this.#canvas.height = Math.round(parseFloat(height) * devicePixelRatio) || 1;
-    if (!this.#header || !this.stage.isLive) return; // another picture may have another camera
+    if (!this.#header?.matrix || !this.stage.isLive) return; // another picture may have another camera
     if (this.box) for (const [one, two] of EDGES) this.#line(this.#corner(one), this.#corner(two), 1);
     if (!this.axes) return;
     for (const [name, direction] of Object.entries(AXES)) {
