@@ -14,6 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 from tqdm import tqdm
 
+from fakesss.patience import Unwanted, is_wanted
 from fakesss.space_order import along_curve
 
 Floats = NDArray[np.float64]
@@ -46,7 +47,8 @@ def mean_over_hemisphere(
 
     `axes` (V, 3), unit length, say where above is. Of `2 * rays` directions about `rays` lie there. "cosine" weighs
     each with the cosine to the axis, "uniform" counts all alike. `label` names the work in the progress bar.
-    Sums are taken in the same order whatever the number of threads, so equal input gives equal bytes.
+    Sums are taken in the same order whatever the number of threads, so equal input gives equal bytes. Raises
+    `patience.Unwanted` when nobody waits for it any more.
     """
     order = along_curve(origins)
     near, normals = origins[order], np.ascontiguousarray(axes[order].T)
@@ -63,6 +65,9 @@ def mean_over_hemisphere(
             weight[block] += weight_of_block
             cast += asked
             bar.update(asked)
+            if not is_wanted():
+                pool.shutdown(cancel_futures=True)
+                raise Unwanted(label)
     mean = np.full(len(order), np.nan)
     mean[order] = np.divide(total, weight, out=np.full(len(order), np.nan), where=weight > 0)
     return mean, cast

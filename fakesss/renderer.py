@@ -60,7 +60,6 @@ class Renderer:
     def __init__(self, gpu: opengl.Gpu | None = None) -> None:
         self.gpu = gpu or opengl.shared()
         self.bakes: Recent[Any] = Recent(BAKES_KEPT)
-        self.buffer_size: tuple[int, int] | None = None
         self.largest_texture = int(self.gpu.context.info["GL_MAX_TEXTURE_SIZE"])  # pixels a side
 
     def render(self, scene: Scene, timed: bool = False, forced: frozenset[str] = NONE) -> Rendering:
@@ -131,10 +130,6 @@ class Renderer:
                 f"scene: size {scene.size[0]}x{scene.size[1]} with supersampling {samples} needs {max(size)} samples "
                 f"in a row, this OpenGL has {self.largest_texture}; lower size or supersampling"
             )
-        if size != self.buffer_size:
-            self.gpu.drawn.clear()
-            self.gpu.pool.release()
-            self.buffer_size = size
 
 
 def rendering(scene: Scene, plan: Plan, outcome: Outcome) -> Rendering:

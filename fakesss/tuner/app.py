@@ -20,8 +20,10 @@ from fakesss.media import MEDIA
 from fakesss.problem import BadInput
 from fakesss.shader_source import ShaderError
 from fakesss.shapes import names
-from fakesss.tuner import asking
+from fakesss.tuner import asking, keep
+from fakesss.tuner.guards import BODY_LIMIT
 from fakesss.tuner.page import HERE, page
+from fakesss.tuner.presets import qualities
 from fakesss.tuner.reload import watch_shaders
 from fakesss.tuner.state import AtTuner, Gone, Tuner
 from fakesss.tuner.viewer import Viewer
@@ -32,10 +34,17 @@ router = APIRouter()
 
 def create_app(tuner: Tuner) -> FastAPI:
     """The application of `tuner`, without its guards."""
-    app = FastAPI(title="fakesss tune", docs_url=None, redoc_url=None, openapi_url=None, lifespan=watching)
+    app = FastAPI(
+        title="fakesss tune",
+        docs_url=None,
+        redoc_url=None,
+        openapi_url=None,
+        lifespan=watching,
+        max_body_size=BODY_LIMIT,
+    )
     app.state.tuner = tuner
     app.mount("/static", StaticFiles(directory=HERE / "static"))
-    for part in (router, asking.router):
+    for part in (router, asking.router, keep.router):
         app.include_router(part)
     for problem in (BadInput, ShaderError):
         app.add_exception_handler(problem, unfit)
@@ -72,6 +81,7 @@ def start(tuner: AtTuner) -> JSONResponse:
             "media": {name: asdict(medium) for name, medium in MEDIA.items()},
             "views": dict(LOOKS),
             "effects": list(EFFECTS),
+            "qualities": qualities(tuner.base),
             "folder": str(tuner.folder),
             "shaders": str(tuner.shaders),
             "version": __version__,
@@ -99,9 +109,10 @@ def not_understood(request: Request, error: Exception) -> Response:
 
 
 def no_page(request: Request, error: Exception) -> Response:
-    """No such address, or not with this method."""
+    """No such address, not with this method, or a body that is longer than it said."""
     assert isinstance(error, HTTPException)
-    return JSONResponse({"error": "There is no such page."}, error.status_code, error.headers)
+    sentence = f"{error.detail}." if error.status_code == 413 else "There is no such page."
+    return JSONResponse({"error": sentence}, error.status_code, error.headers)
 
 
 def nobody(request: Request, error: Exception) -> Response:

@@ -12,6 +12,7 @@ from fakesss.problem import BadInput, Strict
 from fakesss.scene import Pixels, Scene
 from fakesss.tuner.frames import PICTURE, Asked
 from fakesss.tuner.state import AtTuner
+from fakesss.tuner.uploads import MOST_BYTES
 from fakesss.tuner.wishes import Settings
 
 router = APIRouter()
@@ -66,7 +67,7 @@ def medium(asked: MediumAsked, tuner: AtTuner) -> JSONResponse:
     return JSONResponse({"changes": {f"material.{name}": after[name] for name in after if after[name] != before[name]}})
 
 
-@router.post("/object")
+@router.post("/object", max_body_size=MOST_BYTES)
 async def load_object(request: Request, tuner: AtTuner, name: Annotated[str, Query(max_length=255)]) -> JSONResponse:
     """A mesh file, the request's body as it is: where it was put, and what is to be said of it."""
     path = await tuner.uploads.receive(name, request.stream())

@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 from PIL import Image
 
-from fakesss.calls import EFFECTS, Setting
+from fakesss.calls import EFFECTS, Setting, lights_of
 from fakesss.camera import View
 from fakesss.colour import to_8bit
 from fakesss.frame_graph import Bake, Plan
@@ -107,7 +107,9 @@ def draw(renderer: Renderer, asked: Asked) -> Drawn:
     scene = asked.drawn
     note, legend, has_camera = "", None, True
     if asked.view == PICTURE:
-        rendering = renderer.render(scene, timed=not asked.moving, forced=asked.forced)
+        # timing takes no time, but draws shadow maps again that a moving picture could keep
+        timed = not asked.moving or not any(light.shadows for light in lights_of(scene))
+        rendering = renderer.render(scene, timed, asked.forced)
         plan, mesh, times = rendering.plan, rendering.mesh, {one["name"]: one["gpu_ms"] for one in rendering.passes}
         drawn = time.perf_counter()
         image, kind = encoded(rendering, asked.moving)

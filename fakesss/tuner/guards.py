@@ -15,6 +15,8 @@ from starlette.datastructures import Headers, MutableHeaders
 from starlette.responses import JSONResponse, RedirectResponse, Response
 from starlette.types import ASGIApp, Message, Receive, Scope, Send
 
+from fakesss.tuner.uploads import MOST_BYTES
+
 OWN_NAMES = ("localhost", "127.0.0.1", "[::1]")
 EVERYWHERE = ("0.0.0.0", "::")
 HOST = re.compile(r"(?P<name>[A-Za-z0-9.-]+|\[[0-9A-Fa-f:.]+\])(:[0-9]{1,5})?")
@@ -32,7 +34,7 @@ HEADERS = {
     "X-Robots-Tag": "noindex, nofollow",
 }
 BODY_LIMIT = 1 << 20  # bytes of a post; 32 lights are 16 KB
-UPLOAD = "/object"  # has a limit of its own
+LIMITS = {"object": MOST_BYTES}  # of the others
 
 
 class Guards:
@@ -49,7 +51,7 @@ class Guards:
         headers = Headers(scope=scope)
         first, slash, path = scope["path"].removeprefix("/").partition("/")
         send = with_headers(send, headers.get("host", ""), is_kept=path.startswith("static/"))
-        if refusal := self.refusal(scope, headers, first):
+        if refusal := self.refusal(scope, headers, first, LIMITS.get(path, BODY_LIMIT)):
             await refusal(scope, receive, send)
         elif not slash:
             await RedirectResponse(f"/{first}/")(scope, receive, send)  # addresses in the page are relative to it
@@ -57,8 +59,8 @@ class Guards:
             inside = {**scope, "path": f"/{path}", "raw_path": f"/{path}".encode()}
             await self.app(inside, receive, send)
 
-    def refusal(self, scope: Scope, headers: Headers, first: str) -> Response | None:
-        """What is said to who may not come in."""
+    def refusal(self, scope: Scope, headers: Headers, first: str, limit: int) -> Response | None:
+        """What is said to who may not come in. `limit`: bytes of a body; who lies about it is stopped inside."""
         hosts = headers.getlist("host")
         name = HOST.fullmatch(hosts[0]) if len(hosts) == 1 else None
         if not name or not self.is_ours(name["name"].lower()):
@@ -68,8 +70,9 @@ class Guards:
         posts = scope["type"] == "websocket" or scope["method"] not in ("GET", "HEAD")
         if posts and not is_same_origin(headers):
             return refused(403, "This request came from another site and was refused.")
-        if scope["type"] == "http" and not scope["path"].endswith(UPLOAD) and too_long(headers):
-            return refused(413, f"A request has {BODY_LIMIT} bytes at most.")
+        length = headers.get("content-length", "0")
+        if length.isdecimal() and int(length) > limit:
+            return refused(413, f"This is more than the {limit >> 20} MB that can be taken here.")
         return None
 
 
@@ -105,12 +108,6 @@ def is_same_origin(headers: Headers) -> bool:
         return origin is None or urlsplit(origin).netloc == headers.get("host")
     except ValueError:  # no address at all, such as http://[
         return False
-
-
-def too_long(headers: Headers) -> bool:
-    """Whether more is announced than anything here is long."""
-    length = headers.get("content-length", "0")
-    return not length.isdecimal() or int(length) > BODY_LIMIT
 
 
 def with_headers(send: Send, host: str, is_kept: bool) -> Send:

@@ -3,14 +3,15 @@
 import asyncio
 from collections import Counter
 from collections.abc import Hashable, Iterator, Mapping
-from concurrent.futures import ThreadPoolExecutor
+from concurrent.futures import Future, ThreadPoolExecutor, wait
 from dataclasses import dataclass, replace
 from typing import Any
 
+from fakesss.patience import Unwanted, while_wanted
 from fakesss.renderer import Renderer
 from fakesss.scene import Scene
 from fakesss.tuner.frames import Asked, Drawn, draw
-from fakesss.tuner.studio import Unprepared
+from fakesss.tuner.studio import LEAVE_S, Unprepared
 
 Changes = Mapping[str, Any]
 
@@ -47,7 +48,7 @@ def in_words(kind: str, scene: Scene) -> str:
     """What is being made."""
     return {
         "mesh": f'The object "{scene.object}"',
-        "solid": f'What is known of "{scene.object}"',
+        "solid": f'The object "{scene.object}"',
         "occlusion": f"Occlusion with {scene.occlusion.rays} rays a vertex",
         "local_thickness": f"Local thickness with {scene.layers.rays} rays a vertex",
         "coarse_mesh": f"A second layer of {scene.layers.faces} faces",
@@ -76,22 +77,32 @@ class Preparing:
 
     def __init__(self) -> None:
         self._thread = ThreadPoolExecutor(1, "preparing")
-        self._under_way: dict[Hashable, asyncio.Future[Any]] = {}
+        self._under_way: dict[Hashable, Future[Any]] = {}
         self._waiting: Counter[Hashable] = Counter()
 
     async def __call__(self, missing: Unprepared) -> Any:
         """What `missing` lacks."""
         key = missing.key
-        if key not in self._under_way:
-            self._under_way[key] = asyncio.get_running_loop().run_in_executor(self._thread, missing.make)
         self._waiting[key] += 1
+        if key not in self._under_way:
+            self._under_way[key] = self._thread.submit(self._make, missing)
         try:
-            return await asyncio.shield(self._under_way[key])
+            return await asyncio.shield(asyncio.wrap_future(self._under_way[key]))
         finally:
             self._waiting[key] -= 1
             if not self._waiting[key]:
-                self._under_way.pop(key).cancel()  # what has begun goes on to its end, and is in the cache then
+                del self._waiting[key]
+                self._under_way.pop(key).cancel()
 
-    def close(self) -> None:
-        """Begin nothing more."""
-        self._thread.shutdown(wait=False, cancel_futures=True)
+    def _make(self, missing: Unprepared) -> Any:
+        if missing.key not in self._waiting:
+            raise Unwanted
+        with while_wanted(lambda: missing.key in self._waiting):
+            return missing.make()
+
+    def close(self) -> bool:
+        """Give up what is under way; False if that has not come to its end after `LEAVE_S`."""
+        self._waiting.clear()
+        last = self._thread.submit(int)
+        self._thread.shutdown(wait=False)
+        return not wait([last], LEAVE_S).not_done

@@ -2,7 +2,7 @@
 
 import asyncio
 from collections.abc import Callable, Hashable
-from concurrent.futures import ThreadPoolExecutor
+from concurrent.futures import ThreadPoolExecutor, wait
 from pathlib import Path
 from typing import Any, TypeVar
 
@@ -64,15 +64,15 @@ class Studio:
         """Forget every compiled program, and what programs drew."""
         await self.do(forget_programs)
 
+    async def rest(self) -> None:
+        """Give back the memory of textures: nobody looks just now."""
+        await self.do(release_textures)
+
     def close(self) -> bool:
         """Free the context; False where a picture is still being drawn after `LEAVE_S`, which nothing can stop."""
         released = self._thread.submit(lambda: shared_renderer().gpu.context.release())
         self._thread.shutdown(wait=False)
-        try:
-            released.result(LEAVE_S)
-        except TimeoutError:
-            return False
-        return True
+        return not wait([released], LEAVE_S).not_done
 
 
 def forget_programs(renderer: Renderer) -> None:
@@ -80,3 +80,9 @@ def forget_programs(renderer: Renderer) -> None:
     renderer.gpu.drawn.clear()
     renderer.gpu.programs.compiled.clear()
     renderer.gpu.programs.defaults.clear()
+
+
+def release_textures(renderer: Renderer) -> None:
+    """What the next picture can make again."""
+    renderer.gpu.drawn.clear()
+    renderer.gpu.pool.release()

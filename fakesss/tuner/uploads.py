@@ -35,13 +35,10 @@ class Uploads:
             raise BadInput(f'"{name}": is no mesh format that can be read; load one of {", ".join(EXTENSIONS).upper()}')
         make_folder(self.folder)
         waiting = self.folder / f".{secrets.token_hex(8)}"
-        digest, size = hashlib.sha256(), 0
+        digest = hashlib.sha256()
         try:
             with waiting.open("wb") as file:
                 async for piece in pieces:
-                    size += len(piece)
-                    if size > MOST_BYTES:
-                        raise BadInput(f'"{name}": has more than {MOST_BYTES >> 20} MB; load a mesh of fewer faces')
                     digest.update(piece)
                     file.write(piece)
             stored = self.folder / f"{digest.hexdigest()}.{kind}"

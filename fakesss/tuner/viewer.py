@@ -58,6 +58,8 @@ class Viewer:
             pass
         finally:
             self.tuner.viewers.discard(self)
+            if not self.tuner.viewers:
+                await self.tuner.studio.rest()
 
     def tell(self, kind: str, **facts: Any) -> None:
         """Send a message that is no frame, without waiting for a slow connection."""
@@ -129,11 +131,13 @@ class Viewer:
             self.tell("working", what=self._making.what, done=True)
         what = in_words(missing.kind, scene)
         self.tell("working", what=what, done=False)
-        self._making = Making(missing, what, self._tasks.create_task(self._prepare(missing, what)))
+        self._making = Making(missing, what, self._tasks.create_task(self._prepare(missing, what, scene.object)))
 
-    async def _prepare(self, missing: Unprepared, what: str) -> None:
+    async def _prepare(self, missing: Unprepared, what: str, name: str) -> None:
         try:
             await self.tuner.prepare(missing)
+            if missing.kind == "mesh":
+                await self.tuner.mesh(name)  # what else is to be known before anything of it can be drawn
         except BadInput as error:
             self.say("error", str(error))
         except Exception:
