@@ -210,8 +210,9 @@ def test_taps_fill_a_penumbra(renderer: Renderer, tmp_path: Path, size: Size, mo
 def test_a_sparse_layer_errs_most_along_outlines(renderer: Renderer, name: str, size: Size, every: int) -> None:
     """Errors of thickness, in texels a side of the sparse layer, h = 1/N apart.
 
-    Inside, bilinear interpolation of a round surface errs as h^2: the median. Towards an outline thickness sinks to 0
-    as a root, so that a strip h wide errs as h^1/2: the mean falls as h^3/2, the root mean square as h.
+    Inside, bilinear interpolation of a round surface errs as h^2: the median. Once texels are smaller than triangles,
+    which are flat, most lie within one, and it errs less still. Towards an outline thickness sinks to 0 as a root, so
+    that a strip h wide errs as h^1/2: the mean falls as h^3/2, the root mean square as h.
     """
     scene = Scene(object=name, size=(16, 16), supersampling=1).replace({"layers.resolution": every})
 
@@ -223,7 +224,7 @@ def test_a_sparse_layer_errs_most_along_outlines(renderer: Renderer, name: str, 
 
     found = {count: differences(count) for count in (size.pixels * k // 2 for k in (1, 2, 3, 4))}
     label = f"{name}, second layer at every {every}th sample"
-    holds(f"{label}, median", list(found), lambda n: float(np.median(np.abs(found[n]))), 1.6, 2.6)
+    holds(f"{label}, median", list(found), lambda n: float(np.median(np.abs(found[n]))), 1.6, 3.6)
     holds(f"{label}, mean", list(found), lambda n: mean(found[n]), 1.25, 2.0)
     holds(f"{label}, rms", list(found), lambda n: rms(found[n]), 0.7, 1.5)
 
