@@ -11,7 +11,9 @@ export function start() {
 
   const tipOf = (element) => element?.closest?.("#panel .control, #panel [data-tip]")?.querySelector(".tip")?.textContent;
   const show = () => {
-    hint.textContent = tipOf(pointed) ?? tipOf(document.activeElement) ?? GENERAL;
+    const tip = tipOf(pointed) ?? tipOf(document.activeElement);
+    hint.textContent = tip ?? GENERAL;
+    hint.classList.toggle("general", !tip);
   };
 
   panel.addEventListener("pointerover", ({ target }) => {
