@@ -52,14 +52,14 @@ class Sweep(Shown):
 def scene_file(tuner: AtTuner, asked: Shown) -> Response:
     """The scene as a file to download; a mesh is named by its whole path."""
     headers = {"Content-Disposition": 'attachment; filename="scene.toml"'}
-    return Response(scene_toml(tuner.scene(asked.settings)), media_type="application/toml", headers=headers)
+    return Response(scene_toml(tuner.kept(asked.settings)), media_type="application/toml", headers=headers)
 
 
 @router.post("/save")
 def save(tuner: AtTuner, asked: Named) -> dict[str, str]:
     """Writes the scene's file into the folder; nothing is written over. A mesh that was uploaded is put beside it."""
     path = tuner.folder / file_name(asked.file)
-    scene = tuner.scene(asked.settings)
+    scene = tuner.kept(asked.settings)
     is_uploaded = tuner.uploads.has(scene.object)  # to the cache, which may be emptied
     mesh = path.with_suffix(Path(scene.object).suffix)
     named = scene.model_copy(update={"object": str(mesh)}) if is_uploaded else scene
@@ -77,9 +77,9 @@ def study(tuner: AtTuner, asked: Sweep) -> dict[str, str]:
     factors = [factor.model_dump() for factor in asked.factors]
     for level in (level for factor in factors if factor["path"] == "object" for level in factor["levels"]):
         changes = {**asked.settings.changes, "object": level}
-        tuner.scene(asked.settings.model_copy(update={"changes": changes}))  # a file that the tuner does not know
+        tuner.kept(asked.settings.model_copy(update={"changes": changes}))  # a file that the tuner does not know
     folder = tuner.folder / plain_name(asked.folder, "folder")
-    path = tuner.write_study(tuner.scene(asked.settings), asked.title, folder, factors)
+    path = tuner.write_study(tuner.kept(asked.settings), asked.title, folder, factors)
     return {"study": str(path), "next": f"fakesss run {quoted(folder)}"}
 
 

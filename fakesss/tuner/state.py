@@ -1,8 +1,9 @@
 """What all of a tuner's endpoints work with."""
 
+import contextlib
 from collections.abc import Awaitable, Callable
 from dataclasses import dataclass, field
-from functools import cached_property, partial
+from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any, TypeVar
 
@@ -10,6 +11,7 @@ from fastapi import Depends
 from starlette.requests import HTTPConnection
 
 from fakesss.mesh import Mesh
+from fakesss.passes.mesh import identity
 from fakesss.problem import BadInput
 from fakesss.renderer import Renderer
 from fakesss.scene import Scene
@@ -28,6 +30,7 @@ Result = TypeVar("Result")
 
 
 async def always() -> bool:
+    """Of a picture that somebody surely waits for."""
     return True
 
 
@@ -43,32 +46,39 @@ class Tuner:
     folder: Path  # files are written here
     shaders: Path
     write_study: WriteStudy | None = None
+    loaded: Mesh | None = None  # the object of `base`, if that was read already
     viewers: "set[Viewer]" = field(default_factory=set)
+    preparing: Preparing = field(default_factory=Preparing)
+    uploads: Uploads = field(default_factory=Uploads)
+    studio: Studio = field(init=False)
 
-    @cached_property
-    def studio(self) -> Studio:
-        return Studio(self.shaders)
+    def __post_init__(self) -> None:
+        self.studio = Studio(self.shaders)
 
-    @cached_property
-    def preparing(self) -> Preparing:
-        return Preparing()
-
-    @cached_property
-    def uploads(self) -> Uploads:
-        return Uploads()
+    async def begin(self) -> None:
+        """Load the object before somebody asks; what is wrong with it is said to who does."""
+        if self.loaded is not None:
+            await self.studio.keep(("mesh", identity(self.base.object)), self.loaded)
+        with contextlib.suppress(BadInput):
+            await self.mesh(self.base.object)
 
     def scene(self, settings: Settings) -> Scene:
         """The scene of these settings; `BadInput` if it is none, or may not be drawn here."""
-        scene = settings.scene(self.base)
-        known = scene.object == self.base.object or self.uploads.has(scene.object)
-        if is_mesh_file(scene.object) and not known:
-            raise BadInput(f'object "{scene.object}": is no file of this tuner; load it with its Load object button')
+        scene = self.kept(settings)
         if samples(scene) > MOST_SAMPLES:
             width, height = scene.size
             raise BadInput(
                 f"size {width}x{height} with supersampling {scene.supersampling}: is more than is drawn here while "
                 "somebody waits; lower one of them, or save the scene and draw it with `fakesss render`"
             )
+        return scene
+
+    def kept(self, settings: Settings) -> Scene:
+        """The same of any size, for a file."""
+        scene = settings.scene(self.base)
+        known = scene.object == self.base.object or self.uploads.has(scene.object)
+        if is_mesh_file(scene.object) and not known:
+            raise BadInput(f'object "{scene.object}": is no file of this tuner; load it with its Load object button')
         return scene
 
     async def prepare(self, missing: Unprepared) -> None:
@@ -97,8 +107,7 @@ class Tuner:
 
     def close(self) -> bool:
         """Stop; whether everything has come to its end."""
-        self.preparing.close()
-        return self.studio.close()
+        return self.preparing.close() & self.studio.close()
 
 
 def tuner_of(connection: HTTPConnection) -> Tuner:
