@@ -6,6 +6,7 @@ import { picked } from "./lights.js";
 
 const SLOP_PX = 6; // a finger trembles by less
 const WHEEL_PAUSE_MS = 250; // after which the next turn of the wheel is another gesture
+const SMALLEST_PX = 100; // of a picture, and of what stands there before the first
 const KEY_DEGREES = 5;
 const KEY_ZOOM = 1.05;
 const NEAREST = 0.1; // sphere radii
@@ -48,7 +49,7 @@ class Moves {
   // That a drag of one CSS pixel is.
   get degrees() {
     const { width, height } = this.stage.canvas.getBoundingClientRect();
-    return 180 / Math.max(Math.min(width, height), 1);
+    return 180 / Math.max(Math.min(width, height), SMALLEST_PX);
   }
 
   // The object turns to the right and upwards, as if its front was dragged: the camera goes the other way.

@@ -101,6 +101,7 @@ export class Stage extends EventTarget {
       this.#live = { bitmap, size, header };
       if (!header.moving) this.#still = { blob: image, header, settings: wish.settings };
       if (this.isLive) this.#paint();
+      Object.assign(this.place.dataset, { wish: header.number, moving: header.moving }); // for who measures and tests
       this.#tell("frame", { header, asked, latency: performance.now() - asked });
       if (!header.moving) this.#tell("still");
     } finally {

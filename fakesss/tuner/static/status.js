@@ -1,7 +1,7 @@
 // How fast pictures come and what they cost; what is wrong with the one that is shown.
 
 const RATE_S = 5; // of moving pictures, over which the frame rates are told
-const BREAK_MS = 1000; // between two frames: nothing was moved in between
+const PAUSE_MS = 50; // from a frame to the next input: the hand rested
 const LATENCIES = 60; // of which the median is told
 const REDRAW_MS = 250; // numbers that change faster cannot be read
 
@@ -23,7 +23,7 @@ export function start({ connection, stage, say }) {
   stage.addEventListener("frame", ({ detail }) => {
     ({ header } = detail);
     if (header.moving) {
-      rates.add(performance.now());
+      rates.add(performance.now(), detail.asked);
       latencies.push(detail.latency);
       if (latencies.length > LATENCIES) latencies.shift();
     }
@@ -37,22 +37,28 @@ export function start({ connection, stage, say }) {
   notices(connection, stage);
 }
 
-// Times of moving frames, as the thesis tells them: least, mean and most frames a second.
+// Of moving frames, as the thesis tells them: least, mean and most a second. A hand that rests is no slow frame.
 class Rates {
-  #times = [];
+  #last = -Infinity;
+  #between = []; // {at, ms}
 
-  add(now) {
-    if (now - this.#times.at(-1) > BREAK_MS) this.#times = [];
-    this.#times.push(now);
-    while (now - this.#times[0] > RATE_S * 1000) this.#times.shift();
+  add(now, asked) {
+    if (asked - this.#last < PAUSE_MS) this.#between.push({ at: now, ms: now - this.#last });
+    this.#last = now;
+    this.#between = this.#between.filter(({ at }) => now - at < RATE_S * 1000);
   }
 
   inWords() {
-    const between = this.#times.slice(1).map((time, i) => time - this.#times[i]);
-    if (!between.length) return "–";
-    const mean = (1000 * between.length) / (this.#times.at(-1) - this.#times[0]);
-    return [1000 / Math.max(...between), mean, 1000 / Math.min(...between)].map((rate) => rate.toFixed(rate < 10 ? 1 : 0)).join(" · ");
+    const all = this.#between.map(({ ms }) => ms);
+    if (!all.length) return "–";
+    const mean = all.reduce((sum, ms) => sum + ms) / all.length;
+    return [Math.max(...all), mean, Math.min(...all)].map(perSecond).join(" · ");
   }
+}
+
+function perSecond(ms) {
+  const rate = 1000 / ms;
+  return rate.toFixed(rate < 10 ? 1 : 0);
 }
 
 function median(values) {
