@@ -57,10 +57,11 @@ def create_app(tuner: Tuner) -> FastAPI:
 
 @contextlib.asynccontextmanager
 async def watching(app: FastAPI) -> AsyncIterator[None]:
-    """Looks after the shaders while the application runs."""
-    task = asyncio.create_task(watch_shaders(app.state.tuner))
+    """Loads the object, and looks after the shaders while the application runs."""
+    tasks = [asyncio.create_task(work(app.state.tuner)) for work in (Tuner.begin, watch_shaders)]
     yield
-    task.cancel()
+    for task in tasks:
+        task.cancel()
 
 
 @router.get("/")

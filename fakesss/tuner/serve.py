@@ -14,8 +14,10 @@ import uvicorn
 from starlette.types import ASGIApp
 
 from fakesss.listening import address_of, listening
+from fakesss.mesh import Mesh
 from fakesss.scene import Scene
 from fakesss.shader_source import GLSL
+from fakesss.shapes import is_mesh_file, load_object, shape_and_faces
 from fakesss.tuner.app import create_app
 from fakesss.tuner.guards import Guards
 from fakesss.tuner.state import Tuner, WriteStudy
@@ -35,10 +37,10 @@ def serve(
 ) -> None:
     """Tune `scene` until interrupted. `announce` is told the address, with its secret, as soon as it answers.
 
-    Raises `BadInput` if the port is taken.
+    Raises `BadInput` if the port is taken, there is no OpenGL, or no such object.
     """
-    tuner = Tuner(scene, Path.cwd(), GLSL, write_study)
     with listening(host, port) as listener:
+        tuner = Tuner(scene, Path.cwd(), GLSL, write_study, read_object(scene.object))
         token = secrets.token_urlsafe(TOKEN_BYTES)
         server = uvicorn.Server(configured(Guards(create_app(tuner), token, host)))
         announce(f"{address_of(listener)}/{token}/")
@@ -49,6 +51,14 @@ def serve(
                 sys.stdout.flush()
                 sys.stderr.flush()
                 os._exit(INTERRUPTED)  # a picture that takes minutes would keep the process for as long
+
+
+def read_object(name: str) -> Mesh | None:
+    """The mesh in a file; of a built-in object, which may take long to make, only whether there is such a one."""
+    if is_mesh_file(name):
+        return load_object(name)
+    shape_and_faces(name)
+    return None
 
 
 @contextlib.contextmanager

@@ -40,12 +40,13 @@ class AtHand(Recent[Any]):
 
 
 class Studio:
-    """A renderer on a thread of its own. `glsl`: the folder of the shaders."""
+    """A renderer on a thread of its own; `BadInput` where there is no OpenGL. `glsl`: the folder of the shaders."""
 
     def __init__(self, glsl: Path = GLSL) -> None:
         self.glsl = glsl
         self.turn = asyncio.Lock()  # first come, first served; whoever leaves while waiting is passed over
-        self._thread = ThreadPoolExecutor(1, "studio", self._open)
+        self._thread = ThreadPoolExecutor(1, "studio")
+        self._thread.submit(self._open).result()
 
     def _open(self) -> None:
         renderer = shared_renderer()
