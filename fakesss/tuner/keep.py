@@ -1,5 +1,6 @@
 """What is taken home from the tuner: a scene's file, downloaded or written where the tuner was started; a study."""
 
+import json
 import re
 import shlex
 from pathlib import Path
@@ -105,7 +106,9 @@ def plain_name(name: str, what: str) -> str:
     """`name` if it can only be something new in the folder, and on any system; `what` says whose name it is."""
     if not PLAIN.fullmatch(name) or RESERVED.fullmatch(name):
         mend = "write one name of letters, digits, spaces, dots and dashes, beginning with a letter or digit"
-        raise BadInput(f'{what} "{name}": cannot be the name of a new {what} here; {mend}')
+        raise BadInput(
+            f"{what} {json.dumps(name, ensure_ascii=False)}: cannot be the name of a new {what} here; {mend}"
+        )
     return name
 
 
