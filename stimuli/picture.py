@@ -26,7 +26,7 @@ if TYPE_CHECKING:
 LIBRARIES = ("moderngl", "numpy", "scipy", "trimesh", "embreex", "scikit-image", "fast-simplification", "pillow")
 # Our own source that no stimulus comes from, by stem; everything else makes pictures stale when it changes.
 COMMANDS = ("__main__", "cli", "cli_analysis", "cli_measure", "cli_picture", "cli_power", "cli_study", "cli_survey")
-TUNER = ("scene_toml",)  # with the folder tuner
+TUNER = ("cli_tune", "listening", "scene_toml")  # with the folder tuner
 TIMES = ("bench", "bench_bake", "bench_tables", "direct", "direct_light", "savings")
 LOOKS = ("inspect", "views", "contact_sheet", "explanation", "graph_drawing", "graph_layout")
 PLOTS = ("profile_plot", "relief", "lighting_terms")
