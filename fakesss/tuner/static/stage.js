@@ -22,9 +22,9 @@ export class Stage extends EventTarget {
   #showing = 0; // counts what `show` was asked for: decoding may overtake
   #touchedAt = -Infinity;
 
-  constructor({ settings, connection, start }) {
+  constructor({ settings, connection, start, say }) {
     super();
-    Object.assign(this, { settings, connection, start });
+    Object.assign(this, { settings, connection, say });
     for (const [name, title] of Object.entries(start.views)) this.#select.add(new Option(title, name));
     this.#select.addEventListener("change", () => (this.view = this.#select.value));
     for (const kind of INPUTS) addEventListener(kind, (event) => this.#touched(event), { capture: true, passive: true });
@@ -104,6 +104,8 @@ export class Stage extends EventTarget {
       Object.assign(this.place.dataset, { wish: header.number, moving: header.moving }); // for who measures and tests
       this.#tell("frame", { header, asked, latency: performance.now() - asked });
       if (!header.moving) this.#tell("still");
+    } catch {
+      this.say("error", "A picture came damaged; the one before stays.");
     } finally {
       this.connection.shown(header.number);
     }
