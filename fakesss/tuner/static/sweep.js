@@ -8,6 +8,8 @@ import { startStudy } from "./sweep_study.js";
 const QUESTIONS = 3; // of the study that is written
 const RATING_S = 5;
 const LONG_MIN = 20; // for one sitting
+const BESIDE_PX = 7; // of a picture: its border and the way to the next
+const HEADER_PX = 86; // of a row
 
 export function start(context) {
   const sweep = new Sweep(context);
@@ -19,6 +21,7 @@ class Sweep extends EventTarget {
   cells = []; // {levels, name, settings, button}
   #preview = document.getElementById("sweep-preview");
   #table = document.getElementById("sweep-grid");
+  #large = document.getElementById("sweep-large");
   #small = new SmallPictures();
   #pictures = new Map(); // cell -> its small picture, of the settings now
   #problems = new Map(); // cell -> why it has none
@@ -26,19 +29,23 @@ class Sweep extends EventTarget {
   #chosen = null; // the cell whose picture is on the stage
   #asked = new AbortController(); // for that picture
 
-  constructor({ settings, stage, say }) {
+  constructor({ settings, stage, connection, say }) {
     super();
     Object.assign(this, { settings, stage, say });
     const [across, down] = document.querySelectorAll("#sweep .factor");
     this.forms = [new FactorForm(down, settings, true), new FactorForm(across, settings, false)];
     for (const form of this.forms) form.addEventListener("change", () => this.#vary());
     settings.addEventListener("change", () => this.#settingsChanged());
+    connection.addEventListener("message", ({ detail }) => detail.type === "again" && this.#forget());
     stage.addEventListener("still", () => this.#drawIfDue());
     stage.addEventListener("live", () => this.#choose(null));
     document.getElementById("sweep").addEventListener("submit", (event) => event.preventDefault());
     document.getElementById("use-these").addEventListener("click", () => this.#use());
     document.getElementById("back-to-live").addEventListener("click", () => this.#back());
     new ResizeObserver(() => this.#drawIfDue()).observe(this.#preview); // the panel's tab was chosen
+    this.#large.addEventListener("close", () => this.#moveTo(this.#preview.querySelector(".over")));
+    this.#large.querySelector(".close").addEventListener("click", () => this.#large.close());
+    document.getElementById("sweep-larger").addEventListener("click", () => this.#enlarge());
     walkable(this.#table);
   }
 
@@ -88,6 +95,8 @@ class Sweep extends EventTarget {
       button.classList.add("waits");
       button.firstElementChild.style.aspectRatio = `${width} / ${height}`;
     }
+    const columns = Number(this.#table.dataset.columns);
+    this.#table.style.maxWidth = `${columns * (width / devicePixelRatio + BESIDE_PX) + HEADER_PX}px`; // no picture enlarged
     markNow(this.#table, (factor, level) => this.#isNow(factor, level));
     this.#warn();
   }
@@ -151,8 +160,27 @@ class Sweep extends EventTarget {
     document.getElementById("sweep-count").textContent = words;
   }
 
+  // The shaders have changed, or something that a picture stood in for is made.
+  #forget() {
+    this.#small.forget();
+    if (this.cells.length) this.#renew();
+  }
+
+  #enlarge() {
+    this.#large.showModal();
+    this.#moveTo(this.#large.querySelector(".over"));
+  }
+
+  // The table after another element, its pictures as large as it has room for there.
+  #moveTo(place) {
+    place.after(this.#table.parentElement);
+    this.#isDue = true;
+    this.#drawIfDue();
+  }
+
   // The whole picture on the stage; once more: the live one again.
   async #show(cell) {
+    this.#large.close();
     if (cell === this.#chosen) return this.#back();
     this.#choose(cell);
     const { signal } = (this.#asked = new AbortController());

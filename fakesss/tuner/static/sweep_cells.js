@@ -79,6 +79,13 @@ export class SmallPictures {
     return true;
   }
 
+  // The shaders may have changed: what is kept is of no use.
+  forget() {
+    this.stop();
+    for (const { address } of this.#kept.values()) URL.revokeObjectURL(address);
+    this.#kept.clear();
+  }
+
   stop() {
     this.#abort.abort();
   }

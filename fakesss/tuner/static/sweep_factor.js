@@ -50,7 +50,7 @@ export class FactorForm extends EventTarget {
     const groups = Map.groupBy(found, ({ group }) => group);
     const options = [...groups].map(([label, members]) => {
       const group = Object.assign(document.createElement("optgroup"), { label });
-      group.append(...members.map(({ path, label: text }) => new Option(text, path)));
+      group.append(...members.map(({ path, name }) => new Option(name, path)));
       return group;
     });
     this.path.replaceChildren(new Option(this.isOptional ? "nothing else" : "choose a setting", ""), ...options);

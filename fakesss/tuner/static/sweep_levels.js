@@ -3,7 +3,7 @@ import { Scale, written } from "./numbers.js";
 
 export const MOST_LEVELS = 9;
 
-// Every control of the panel that is a number, a choice or a switch, as {path, name, label, group, levels or scale}.
+// Every control of the panel that is a number, a choice or a switch, as {path, name, group, scale or choices}.
 // Those of the light stand there once, and here once for each light.
 export function variables(settings) {
   const further = settings.value("lights").length;
@@ -17,11 +17,6 @@ export function variables(settings) {
       found.push({ ...variable(element, `lights.${index}.${field}`), group: `Light ${index + 2}` });
     }
   }
-  const labels = found.map(({ label }) => label);
-  for (const each of found) {
-    const isAlone = labels.indexOf(each.label) === labels.lastIndexOf(each.label);
-    each.name = isAlone ? each.label : `${owner(each.path)} ${each.label}`;
-  }
   return found;
 }
 
@@ -29,16 +24,20 @@ function variable(element, path) {
   const { label, kind } = element.dataset;
   const panel = element.closest("[role=tabpanel]");
   const group = document.getElementById(panel.getAttribute("aria-labelledby")).textContent.trim();
-  if (kind === "number") return { path, label, group, scale: new Scale(element.dataset) };
+  const name = nameOf(path, label);
+  if (kind === "number") return { path, name, group, scale: new Scale(element.dataset) };
   const options = [...element.querySelectorAll("option")].map(({ value, text }) => ({ value: JSON.parse(value), text }));
   const switches = [{ value: true, text: "on" }, { value: false, text: "off" }];
   // a field left empty is no level: a study's file has no word for it
-  return { path, label, group, choices: kind === "switch" ? switches : options.filter(({ value }) => value !== null) };
+  return { path, name, group, choices: kind === "switch" ? switches : options.filter(({ value }) => value !== null) };
 }
 
-function owner(path) {
-  const [first, index] = path.split(".");
-  return first === "lights" ? `light ${Number(index) + 2}` : first;
+// What a reader of the study can tell apart: "light azimuth", "camera azimuth", "blur kernel", "backlight".
+function nameOf(path, label) {
+  const parts = path.split(".");
+  const owner = parts[0] === "lights" ? `light ${Number(parts[1]) + 2}` : parts[0];
+  if (parts.at(-1) === "enabled") return owner;
+  return parts.length === 1 || owner === "material" ? label : `${owner} ${label}`;
 }
 
 // A range around the value now: a quarter of the slider to both sides, or half and twice as much.
