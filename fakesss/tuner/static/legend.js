@@ -11,7 +11,7 @@ export function start({ stage }) {
 
   function show({ detail }) {
     shown = detail?.header ? (detail.header.legend ?? null) : shown;
-    place.hidden = !shown || !stage.isLive;
+    place.hidden = !(shown?.scale || shown?.marks.length) || !stage.isLive;
     const text = JSON.stringify(shown);
     if (!shown || place.dataset.shown === text) return; // while something moves most frames have the same
     place.dataset.shown = text;

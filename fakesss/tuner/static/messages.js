@@ -6,6 +6,7 @@ const NAMES = { error: "Error", warning: "Warning", info: "Note" };
 // Gives `say(level, text)`, level being "error", "warning" or "info".
 export function start({ connection }) {
   const log = document.getElementById("log");
+  const pane = log.parentElement; // scrolls
   const unread = document.getElementById("unread");
   const drawer = document.getElementById("messages");
   let last = null; // {level, text, times, count: where the repeats stand}
@@ -22,7 +23,7 @@ export function start({ connection }) {
   }
 
   function say(level, text) {
-    const isAtEnd = log.scrollTop + log.clientHeight >= log.scrollHeight - 8;
+    const isAtEnd = pane.scrollTop + pane.clientHeight >= pane.scrollHeight - 8;
     note(level);
     if (last && last.level === level && last.text === text) {
       last.count.textContent = ` × ${++last.times}`;
@@ -32,7 +33,7 @@ export function start({ connection }) {
       last = { level, text, times: 1, count: line.lastElementChild };
       while (log.children.length > KEPT) log.firstElementChild.remove();
     }
-    if (isAtEnd) log.scrollTop = log.scrollHeight; // who reads further up is left there
+    if (isAtEnd) pane.scrollTop = pane.scrollHeight; // who reads further up is left there
   }
 
   connection.addEventListener("message", ({ detail }) => detail.type === "message" && say(detail.level, detail.text));
