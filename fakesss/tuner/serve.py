@@ -71,7 +71,13 @@ def tuned(
     token: str = "",
 ) -> Iterator[str]:
     """The same on this machine only, in a thread for as long as the block runs; gives its address."""
-    tuner = Tuner(scene, folder, shaders, write_study)
+    with running(Tuner(scene, folder, shaders, write_study), port, token) as url:
+        yield url
+
+
+@contextlib.contextmanager
+def running(tuner: Tuner, port: int = 0, token: str = "") -> Iterator[str]:
+    """The same for a tuner that was made already."""
     token = token or secrets.token_urlsafe(TOKEN_BYTES)
     with listening("127.0.0.1", port) as listener:
         server = uvicorn.Server(configured(Guards(create_app(tuner), token, "127.0.0.1")))

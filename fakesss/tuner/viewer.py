@@ -41,7 +41,7 @@ class Viewer:
         self.tuner, self.socket = tuner, socket
         self.pace = Pace()
         self.last: Scene | None = None  # all of it was at hand
-        self._newest: tuple[Wish, float] | None = None  # and when it came
+        self.newest: tuple[Wish, float] | None = None  # and when it came
         self._asked = asyncio.Event()
         self._making: Making | None = None
         self._tasks = asyncio.TaskGroup()
@@ -76,7 +76,7 @@ class Viewer:
             if message["type"] == "websocket.disconnect":
                 raise WebSocketDisconnect(message["code"])
             try:
-                self._newest = read_wish(message.get("text")), time.perf_counter()
+                self.newest = read_wish(message.get("text")), time.perf_counter()
             except Refused as refused:
                 self.say("error", str(refused), refused.number)
             else:
@@ -87,8 +87,8 @@ class Viewer:
             await self._asked.wait()
             async with self.tuner.studio.turn:
                 self._asked.clear()
-                assert self._newest is not None
-                wish, since = self._newest  # those before it are forgotten
+                assert self.newest is not None
+                wish, since = self.newest  # those before it are forgotten
                 wait = 1e3 * (time.perf_counter() - since)
                 found = await self._attempt(wish)
             if found is None:
