@@ -4,6 +4,7 @@ import { fitted } from "./fitted.js";
 import { picked } from "./lights.js";
 import { NumberField } from "./number_field.js";
 import { Scale } from "./numbers.js";
+import { isSame } from "./settings.js";
 
 // One field's element. Kinds differ in `build`, and in `write`, which shows a value.
 class Control {
@@ -34,11 +35,16 @@ class Control {
   }
 
   reset() {
-    this.tell("");
+    this.forget();
     if (this.settings.original(this.path) !== undefined) this.settings.reset(this.path);
     else this.settings.set(this.path, JSON.parse(this.data.default)); // of a light that was added here
     const reset = this.element.querySelector(".reset");
     if (document.activeElement === reset) this.inputs[0].focus(); // it is about to vanish
+  }
+
+  forget() {
+    this.tell("");
+    for (const field of this.fields ?? []) field.forget();
   }
 
   get inputs() {
@@ -70,6 +76,7 @@ class Control {
   disable(why) {
     this.element.querySelector(".otherwise").textContent = why;
     this.element.classList.toggle("idle", Boolean(why));
+    if (why) this.forget();
     for (const input of this.element.querySelectorAll("input, select")) input.disabled = Boolean(why);
   }
 }
@@ -77,14 +84,15 @@ class Control {
 class NumberControl extends Control {
   build() {
     const hands = { change: (value, isGesture) => this.set(value, isGesture), settle: () => this.settings.settle() };
-    this.field = new NumberField(this.element, new Scale(this.data), { ...hands, tell: (problem) => this.tell(problem) });
+    const field = new NumberField(this.element, new Scale(this.data), { ...hands, tell: (problem) => this.tell(problem) });
+    this.fields = [field];
     this.auto = this.element.querySelector(".auto input");
     this.auto?.addEventListener("change", () => this.set(this.auto.checked ? null : this.shown));
   }
 
   write(value) {
     this.shown = value;
-    this.field.show(value, this.unit);
+    this.fields[0].show(value, this.unit);
   }
 }
 
@@ -169,18 +177,39 @@ export function start({ settings, connection, start: facts }) {
   settings.addEventListener("change", showSoon);
   picked.addEventListener("pick", showSoon);
   connection.addEventListener("frame", ({ detail: { header } }) => {
-    if (header.faces === faces) return;
-    faces = header.faces;
-    showSoon();
+    if (header.faces !== faces) showSoon();
+    ({ faces } = header);
   });
-  connection.addEventListener("message", ({ detail }) => {
-    if (detail.level === "error") blame(controls, detail.text);
-  });
+  blame(controls, connection);
+  resetting(controls, settings);
   show();
 }
 
-// The server refuses what no field alone shows to be wrong: said beside the field that its sentence names.
-function blame(controls, text) {
-  const named = controls.find(({ path }) => text.includes(`${path}:`) || text.includes(`${path} `));
-  named?.tell(text);
+// What the server refuses though no field alone shows it to be wrong is said beside the field that its sentence names
+// ("camera.near: ...", "camera: near 5 must be ..."), until a picture comes.
+function blame(controls, connection) {
+  let blamed = null;
+  const acquit = () => {
+    blamed?.tell("");
+    blamed = null;
+  };
+  connection.addEventListener("frame", acquit);
+  connection.addEventListener("message", ({ detail: { level, text } }) => {
+    if (level !== "error") return;
+    acquit();
+    const isNamed = (name) => text.includes(`${name}:`) || text.includes(`${name} `);
+    blamed = controls.find(({ path }) => isNamed(path) || isNamed(path.replace(/\.(?=[^.]*$)/, ": ")));
+    blamed?.tell(text);
+  });
+}
+
+function resetting(controls, settings) {
+  const button = document.getElementById("reset-all");
+  const show = () => (button.disabled = isSame(settings.current, { changes: {}, effects: {} }));
+  button.addEventListener("click", () => {
+    for (const control of controls) control.forget();
+    settings.reset();
+  });
+  settings.addEventListener("change", show);
+  show();
 }

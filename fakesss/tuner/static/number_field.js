@@ -38,15 +38,24 @@ export class NumberField {
     if (!this.#isTyping) this.typed.value = written(value);
   }
 
+  // What was typed and not taken.
+  forget() {
+    if (!this.#isTyping) return;
+    this.#isTyping = false;
+    this.typed.value = written(this.#value);
+    this.#say();
+  }
+
   #press(event) {
     if (event.key === "Enter") this.#read();
-    if (event.key === "Escape" && this.#isTyping) this.#forget();
+    if (event.key === "Escape" && this.#isTyping) this.forget();
     const isSlider = event.target === this.slider;
     const to = this.#to(event, isSlider);
     if (to === null || event.ctrlKey || event.altKey || event.metaKey) return;
     event.preventDefault();
-    this.#forget();
+    this.forget();
     this.#isStepping = true;
+    this.#value = to; // a held key may repeat before this is shown
     this.hands.change(to, true);
   }
 
@@ -70,19 +79,12 @@ export class NumberField {
     const { value, problem } = this.scale.read(this.typed.value);
     this.#say(problem);
     if (problem) return;
-    this.#forget();
+    this.forget();
     this.hands.change(value, false);
   }
 
-  #forget() {
-    this.#isTyping = false;
-    this.typed.value = written(this.#value);
-    this.#say();
-  }
-
   #say(problem = "") {
-    this.typed.toggleAttribute("aria-invalid", Boolean(problem));
-    if (problem) this.typed.setAttribute("aria-invalid", "true");
+    this.typed.setAttribute("aria-invalid", Boolean(problem));
     this.hands.tell(problem);
   }
 }

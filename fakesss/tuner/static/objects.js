@@ -26,8 +26,7 @@ export function start({ settings, say }) {
   function tell(sentence) {
     problem.textContent = sentence;
     problem.hidden = !sentence;
-    faces.toggleAttribute("aria-invalid", Boolean(sentence));
-    if (sentence) faces.setAttribute("aria-invalid", "true");
+    faces.setAttribute("aria-invalid", Boolean(sentence));
   }
 
   function choose() {
