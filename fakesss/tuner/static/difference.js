@@ -15,7 +15,7 @@ export function start({ settings, stage, say }, pictures, pins) {
   function chosen(name) {
     if (name === LIVE) return { settings: settings.current, view: stage.view };
     if (name === BEFORE) return settings.previous && { settings: settings.previous, view: stage.view };
-    return pins.all[Number(name)];
+    return pins.all.find(({ id }) => id === name);
   }
 
   async function show() {
@@ -50,17 +50,18 @@ export function start({ settings, stage, say }, pictures, pins) {
     stage.showLive();
   }
 
+  // What was chosen stays, as long as it is there.
   function fill(select, start) {
-    const value = select.value || start;
+    const value = select.dataset.chosen ?? start;
     const options = [new Option("live", LIVE), new Option("before", BEFORE)];
-    options.push(...pins.all.map(({ name }, index) => new Option(name, index)));
+    options.push(...pins.all.map(({ name, id }) => new Option(name, id)));
     select.replaceChildren(...options);
     select.value = options.some((option) => option.value === value) ? value : start;
   }
 
   function refill() {
     fill(one, LIVE);
-    fill(other, pins.all.length ? "0" : BEFORE);
+    fill(other, pins.all[0]?.id ?? BEFORE);
     if (isOn && !pins.all.length) turn(false); // its place is gone
   }
 
@@ -70,7 +71,12 @@ export function start({ settings, stage, say }, pictures, pins) {
   stage.addEventListener("live", again);
   pins.addEventListener("change", refill);
   button.addEventListener("click", () => turn(!isOn));
-  for (const select of [one, other, gain]) select.addEventListener("change", again);
+  for (const select of [one, other, gain]) {
+    select.addEventListener("change", () => {
+      select.dataset.chosen = select.value;
+      again();
+    });
+  }
   refill();
 }
 

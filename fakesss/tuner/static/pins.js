@@ -6,7 +6,8 @@ const MOST = 4;
 const KEY = `fakesss-pins ${location.pathname}`; // kept while this tab is open: a reload loses none
 
 export class Pins extends EventTarget {
-  #pins = []; // {name, settings, view, blob, entry, peek}
+  #count = 0; // of all that ever were
+  #pins = []; // {id, name, settings, view, entry: its element, index: its place, peek: its key}
   #list = document.getElementById("pins");
   #button = document.getElementById("pin");
 
@@ -19,9 +20,9 @@ export class Pins extends EventTarget {
     this.#tell();
   }
 
-  // [{name, settings, view}], as they stand.
+  // [{id, name, settings, view}], as they stand.
   get all() {
-    return this.#pins.map(({ name, settings, view }, number) => ({ name: name || `pin ${number + 1}`, settings, view }));
+    return this.#pins.map(({ id, name, settings, view }, place) => ({ id, name: name || `pin ${place + 1}`, settings, view }));
   }
 
   async #pinned() {
@@ -33,7 +34,7 @@ export class Pins extends EventTarget {
   async #add(pin) {
     if (this.#pins.length === MOST) return;
     const entry = document.getElementById("pin-entry").content.firstElementChild.cloneNode(true);
-    this.#pins.push(Object.assign(pin, { entry, peek: null }));
+    this.#pins.push(Object.assign(pin, { entry, id: `pin-${++this.#count}` }));
     this.#list.append(entry);
     this.#wire(pin);
     this.#tell();
@@ -68,6 +69,7 @@ export class Pins extends EventTarget {
 
   #remove(pin) {
     pin.peek?.leave.abort();
+    this.context.stage.showLive(); // if it was looked at
     URL.revokeObjectURL(pin.entry.querySelector("img").src);
     pin.entry.remove();
     this.#pins = this.#pins.filter((one) => one !== pin);

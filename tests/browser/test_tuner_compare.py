@@ -1,0 +1,248 @@
+"""The tuner's comparisons: undo and redo, the setting before, pins, differences."""
+
+import re
+import secrets
+from collections.abc import Iterator
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+from accessible import violations, with_axe
+from PIL import Image
+from playwright.sync_api import BrowserContext, Page, expect
+from tuner_pages import Pixels, Talk, on_canvas, opened, wait
+from tuner_server import tuned
+
+from fakesss.renderer import render_file
+from fakesss.scene import Scene
+
+pytestmark = [pytest.mark.browser, pytest.mark.gl]
+
+SIZE = 96
+BASE = Scene.from_dict(
+    {"object": "sphere:1000", "size": (SIZE, SIZE), "supersampling": 1, "occlusion": {"rays": 4}}, "test"
+)
+LEFT = {"light.azimuth": -40}
+
+
+@pytest.fixture(scope="module")
+def url(tmp_path_factory: pytest.TempPathFactory) -> Iterator[str]:
+    """One tuner for all of these."""
+    with tuned(BASE, tmp_path_factory.mktemp("tuner")) as address:
+        yield address
+
+
+@pytest.fixture
+def talk(page: Page, url: str) -> Talk:
+    """A page that has its first picture."""
+    return opened(page, url)
+
+
+def rendered(changes: dict[str, Any], folder: Path) -> Pixels:
+    """The file that `fakesss render` makes of the scene, (height, width, 3)."""
+    path = folder / f"{secrets.token_hex(4)}.png"
+    render_file(BASE.replace(changes, "test"), path, timed=False)
+    return np.asarray(Image.open(path).convert("RGB"))
+
+
+def press(talk: Talk, *keys: str) -> Pixels:
+    """Keys on the picture; the still picture they lead to."""
+    seen = len(talk.of("wish"))
+    talk.page.locator("#place").focus()
+    for key in keys:
+        talk.page.keyboard.press(key)
+    talk.settled(after=seen)
+    return on_canvas(talk.page)
+
+
+def shows(page: Page, picture: Pixels) -> None:
+    """Wait until this is on the canvas."""
+    wait(page, lambda: np.array_equal(on_canvas(page), picture))
+
+
+def test_undo_and_redo_by_button_and_by_key(page: Page, talk: Talk) -> None:
+    first = on_canvas(page)
+    second = press(talk, "Shift+ArrowLeft")
+    page.keyboard.press("Control+z")
+    shows(page, first)
+    page.keyboard.press("Control+Shift+Z")
+    shows(page, second)
+    page.locator("#undo").click()
+    shows(page, first)
+    expect(page.locator("#undo")).to_be_disabled()
+    page.keyboard.press("Control+y")
+    shows(page, second)
+    expect(page.locator("#redo")).to_be_disabled()
+
+
+def test_undo_in_a_field_is_the_field_s_own(page: Page, talk: Talk) -> None:
+    press(talk, "Shift+ArrowLeft")
+    page.get_by_role("tab", name="Material").click()
+    field = page.locator("#panel-material input.typed").first
+    field.click()
+    field.press("7")
+    field.press("Control+z")
+    assert talk.changes == LEFT
+
+
+def test_holding_b_shows_the_setting_before(page: Page, talk: Talk) -> None:
+    first = on_canvas(page)
+    second = press(talk, "Shift+ArrowLeft")
+    asked = len(talk.of("wish"))
+    page.keyboard.down("b")
+    shows(page, first)
+    expect(page.locator("#caption")).to_contain_text("light azimuth −35")
+    expect(page.locator("#previous")).to_have_attribute("aria-pressed", "true")
+    page.keyboard.up("b")
+    shows(page, second)
+    expect(page.locator("#previous")).to_have_attribute("aria-pressed", "false")
+    assert (len(talk.of("wish")), talk.changes) == (asked, LEFT)  # nothing was changed by looking
+
+
+def test_the_setting_before_by_a_click_and_until_something_changes(page: Page, talk: Talk) -> None:
+    first = on_canvas(page)
+    second = press(talk, "Shift+ArrowLeft")
+    page.locator("#previous").click()
+    shows(page, first)
+    page.locator("#previous").click()
+    shows(page, second)
+    page.locator("#previous").press("Enter")
+    shows(page, first)
+    third = press(talk, "Shift+ArrowLeft")
+    assert not np.array_equal(third, first) and not np.array_equal(third, second)
+    expect(page.locator("#previous")).to_have_attribute("aria-pressed", "false")
+    shows(page, third)
+
+
+def test_the_button_can_be_held_too(page: Page, talk: Talk) -> None:
+    first = on_canvas(page)
+    second = press(talk, "Shift+ArrowLeft")
+    page.clock.install(time=0)
+    page.clock.pause_at(10)
+    page.locator("#previous").hover()
+    page.mouse.down()
+    shows(page, first)
+    page.clock.run_for(1000)
+    page.mouse.up()
+    shows(page, second)
+
+
+def pinned(page: Page, count: int) -> None:
+    """Pin what there is, as the pin of this number."""
+    page.locator("#pin").click()
+    image = page.locator("#pins img").nth(count - 1)
+    wait(page, lambda: image.evaluate("img => img.complete && img.naturalWidth") == SIZE)
+
+
+def test_pins_are_named_by_what_differs_and_brought_back(page: Page, talk: Talk) -> None:
+    expect(page.locator("#compare")).to_be_hidden()
+    first = on_canvas(page)
+    pinned(page, 1)
+    expect(page.locator("#pins .values")).to_have_text("as the live picture")
+    second = press(talk, "Shift+ArrowLeft")
+    pinned(page, 2)
+    expect(page.locator("#pins .values")).to_have_text(["light azimuth −35", "light azimuth −40"])
+    page.get_by_role("button", name="Bring back pin 1: light azimuth −35").click()
+    shows(page, first)
+    assert talk.changes == {}
+    page.keyboard.press("Control+z")
+    shows(page, second)
+    page.get_by_role("textbox", name="Name of pin 2").fill("from the left")
+    page.keyboard.press("Tab")
+    expect(page.get_by_role("button", name="Remove from the left")).to_be_visible()
+    page.get_by_role("button", name="Remove pin 1").click()
+    expect(page.locator("#pins li")).to_have_count(1)
+    expect(page.get_by_role("textbox", name="Name of pin 1")).to_have_value("from the left")
+
+
+def test_a_digit_held_shows_a_pin(page: Page, talk: Talk) -> None:
+    first = on_canvas(page)
+    pinned(page, 1)
+    second = press(talk, "Shift+ArrowLeft")
+    pinned(page, 2)
+    third = press(talk, "Shift+ArrowLeft")
+    for key, picture in (("1", first), ("2", second)):
+        page.keyboard.down(key)
+        shows(page, picture)
+        page.keyboard.up(key)
+        shows(page, third)
+    page.get_by_role("button", name="Remove pin 1").click()
+    page.locator("#place").focus()
+    page.keyboard.down("1")  # which is the second now
+    shows(page, second)
+    page.keyboard.up("1")
+    page.get_by_role("button", name="Look at pin 1").click()
+    shows(page, second)
+
+
+def test_there_are_four_pins_at_most_and_a_reload_keeps_them(page: Page, talk: Talk) -> None:
+    for number in range(1, 5):
+        pinned(page, number)
+        press(talk, "Shift+ArrowLeft")
+    expect(page.locator("#pin")).to_be_disabled()
+    page.get_by_role("textbox", name="Name of pin 3").fill("third")
+    page.keyboard.press("Tab")
+    words = page.locator("#pins .values").all_text_contents()
+    page.reload()
+    wait(page, lambda: page.locator("#pins img").count() == 4)
+    assert page.locator("#pins .values").all_text_contents() == words
+    expect(page.get_by_role("textbox", name="Name of pin 3")).to_have_value("third")
+    page.get_by_role("button", name="Remove third").click()
+    expect(page.locator("#pin")).to_be_enabled()
+
+
+def test_the_difference_is_that_of_the_rendered_files(page: Page, talk: Talk, tmp_path: Path) -> None:
+    pinned(page, 1)
+    page.locator("#show-difference").click()
+    expect(page.locator("#difference-words")).to_have_text("No pixel differs.")
+    assert not on_canvas(page)[..., :3].any()
+    press(talk, "Shift+ArrowLeft")
+    expect(page.locator("#difference-words")).to_contain_text("Largest")  # drawn anew with the new picture
+    before, after = (rendered(changes, tmp_path).astype(int) for changes in ({}, LEFT))
+    apart = np.abs(before - after)
+    wait(page, lambda: np.array_equal(on_canvas(page)[..., :3], np.minimum(8 * apart, 255)))
+    page.locator("#difference-gain").select_option("1")
+    wait(page, lambda: np.array_equal(on_canvas(page)[..., :3], apart))
+    found = re.fullmatch(
+        r"Largest (\d+) of 255, at \((\d+), (\d+)\); mean ([\d.]+); ([\d.]+) % of the pixels differ\.",
+        page.locator("#difference-words").text_content() or "",
+    )
+    assert found
+    largest, x, y, mean, share = map(float, found.groups())
+    assert largest == apart.max() == apart[int(y), int(x)].max()
+    assert mean == pytest.approx(apart.mean(), rel=0.06)
+    assert share == pytest.approx(100 * apart.any(axis=2).mean(), rel=0.06)
+    page.locator("#show-difference").click()
+    wait(page, lambda: np.array_equal(on_canvas(page)[..., :3], after))
+
+
+def test_pictures_of_different_sizes_have_no_difference(page: Page, talk: Talk) -> None:
+    pinned(page, 1)
+    page.get_by_role("tab", name="Shader").click()
+    width = page.locator('.control[data-path="size"] input.typed').first
+    seen = len(talk.of("wish"))
+    width.fill("64")
+    width.press("Enter")
+    talk.settled(after=seen)
+    page.locator("#show-difference").click()
+    expect(page.locator("#difference-words")).to_contain_text("different sizes: 64 × 96 and 96 × 96")
+
+
+def test_a_pin_whose_picture_is_refused_is_taken_away_and_that_is_said(page: Page, talk: Talk) -> None:
+    pinned(page, 1)
+    press(talk, "Shift+ArrowLeft")
+    page.route("**/picture", lambda route: route.fulfill(status=422, json={"error": "There is no such mesh."}))
+    page.reload()
+    expect(page.locator("#log")).to_contain_text("There is no such mesh.")
+    expect(page.locator("#pins li")).to_have_count(0)
+
+
+def test_axe_finds_nothing_wrong_with_pins_and_drawers_open(context: BrowserContext, url: str) -> None:
+    page = with_axe(context).new_page()
+    talk = opened(page, url)
+    pinned(page, 1)
+    press(talk, "Shift+ArrowLeft")
+    page.locator("#show-passes").click()
+    page.locator("#show-messages").click()
+    assert violations(page) == []
