@@ -36,7 +36,7 @@ def field(path: str) -> dict[str, Any]:
     for part in path.split("."):
         name = place.get("$ref", "").removeprefix("#/$defs/")
         place = (schema()["$defs"][name] if name else place)["properties"][part]
-    filled = next((one for one in place.get("anyOf", ()) if one.get("type") != "null"), {})
+    filled: dict[str, Any] = next((one for one in place.get("anyOf", ()) if one.get("type") != "null"), {})
     return {**place, **filled}
 
 

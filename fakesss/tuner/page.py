@@ -8,7 +8,7 @@ from fakesss.media import MEDIA
 from fakesss.mesh import EXTENSIONS
 from fakesss.scene import Scene
 from fakesss.shapes import DEFAULT_FACES, FACES, names
-from fakesss.tuner.controls import EFFECTS, GROUPS
+from fakesss.tuner.panel import EFFECTS, GROUPS
 
 HERE = Path(__file__).parent
 PANELS = {"lights": "Lights", "material": "Material", "camera": "Camera", "shader": "Shader", "sweep": "Sweep"}

@@ -10,12 +10,14 @@ from fakesss.calls import EFFECTS
 from fakesss.lights import Light
 from fakesss.problem import BadInput
 from fakesss.scene import Scene, scene_paths
-from fakesss.tuner import controls, fields
-from fakesss.tuner.controls import NO_CONTROL, Control
+from fakesss.tuner import fields
+from fakesss.tuner.controls import Control
 from fakesss.tuner.page import PANELS, page
+from fakesss.tuner.panel import EFFECTS as SWITCHED
+from fakesss.tuner.panel import NO_CONTROL, controls
 from fakesss.tuner.presets import qualities
 
-ALL = tuple(controls.controls())
+ALL = tuple(controls())
 NUMBERS = [control for control in ALL if control.kind in ("number", "colour", "triple", "size")]
 OWN_SYMBOLS = {"material.thickness": "t", "light.spot_exponent": "e", "occlusion.enabled": "a"}  # nowhere in brackets
 
@@ -43,7 +45,7 @@ def test_every_field_has_one_control_or_a_reason_for_none() -> None:
 
 
 def test_effects_are_those_that_can_be_switched() -> None:
-    assert set(controls.EFFECTS) == set(EFFECTS)
+    assert set(SWITCHED) == set(EFFECTS)
 
 
 @pytest.mark.parametrize("control", NUMBERS, ids=named)

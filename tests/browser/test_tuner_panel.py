@@ -17,8 +17,8 @@ from fakesss.media import MEDIA
 from fakesss.offline.fit_start import starting_scene
 from fakesss.scene import Scene
 from fakesss.shadow_maps import atlas
-from fakesss.tuner.controls import GROUPS, controls
 from fakesss.tuner.page import PANELS
+from fakesss.tuner.panel import GROUPS, controls
 
 pytestmark = [pytest.mark.browser, pytest.mark.gl]
 
@@ -268,6 +268,8 @@ def test_lights_are_added_picked_tuned_and_removed(tuner: TunerPage) -> None:
     expect(page.get_by_role("radio", name="Light 2")).to_be_checked()
     expect(tuner.control("light.cutoff").locator(".otherwise")).to_have_text("only of a spot light")
     expect(tuner.slider("light.cutoff")).to_be_hidden()
+    expect(tuner.control("light.kind").locator(".reset")).to_be_hidden()
+    expect(tuner.control("light.ambient").locator(".reset")).to_be_visible()  # a further light adds none
     tuner.control("light.kind").locator("select").select_option("spot")
     tuner.typed("light.cutoff").fill("12")
     tuner.typed("light.cutoff").press("Enter")
@@ -306,7 +308,7 @@ def test_no_more_lights_than_a_scene_has(tuner: TunerPage) -> None:
 def test_effects_say_why_they_are_left_out(tuner: TunerPage) -> None:
     tuner.tab("shader")
     page = tuner.page
-    specular, shadows = page.locator("[data-effect=specular]"), page.locator("[data-effect=shadows]")
+    specular, shadows = page.locator(".effect[data-effect=specular]"), page.locator(".effect[data-effect=shadows]")
     expect(shadows.locator(".reason")).to_have_text("left out: no light has shadows = true")
     expect(specular.locator(".reason")).to_have_text("simulated")
     specular.get_by_role("radio", name="off").check(force=True)
@@ -315,10 +317,16 @@ def test_effects_say_why_they_are_left_out(tuner: TunerPage) -> None:
     shadows.get_by_role("radio", name="on").check(force=True)
     expect(shadows.locator(".reason")).to_have_text("simulated")
     page.get_by_role("checkbox", name="technique").uncheck()
-    expect(page.locator("[data-effect=backlight]").get_by_role("radio", name="off")).to_be_checked()
-    expect(page.locator("[data-effect=blur] .reason")).to_contain_text("left out")
+    expect(page.locator(".effect[data-effect=backlight]").get_by_role("radio", name="off")).to_be_checked()
+    expect(page.locator(".effect[data-effect=blur] .reason")).to_contain_text("left out")
+    tuner.tab("material")
+    expect(tuner.control("material.backlight").locator(".otherwise")).to_have_text("off by hand, under Effects")
+    expect(tuner.slider("material.backlight")).to_be_hidden()
+    tuner.tab("shader")
     page.get_by_role("checkbox", name="technique").check()
     tuner.wait_for(lambda: tuner.settings["effects"] == {"specular": "off", "shadows": "on"})
+    page.locator(".effect[data-effect=occlusion]").get_by_role("radio", name="off").check(force=True)
+    expect(tuner.control("occlusion.method").locator(".otherwise")).to_have_text("occlusion is off")
 
 
 def test_a_quality_shows_what_it_sets_and_gives_way(tuner: TunerPage) -> None:
