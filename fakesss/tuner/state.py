@@ -15,7 +15,7 @@ from fakesss.passes.mesh import identity
 from fakesss.problem import BadInput
 from fakesss.renderer import Renderer
 from fakesss.scene import Scene
-from fakesss.shapes import is_mesh_file
+from fakesss.shapes import is_mesh_file, shape_and_faces
 from fakesss.tuner.frames import MOST_SAMPLES, Asked, Drawn, draw, samples
 from fakesss.tuner.preparing import Preparing
 from fakesss.tuner.studio import Studio, Unprepared
@@ -76,8 +76,9 @@ class Tuner:
     def kept(self, settings: Settings) -> Scene:
         """The same of any size, for a file."""
         scene = settings.scene(self.base)
-        known = scene.object == self.base.object or self.uploads.has(scene.object)
-        if is_mesh_file(scene.object) and not known:
+        if not is_mesh_file(scene.object):
+            shape_and_faces(scene.object)
+        elif scene.object != self.base.object and not self.uploads.has(scene.object):
             raise BadInput(f'object "{scene.object}": is no file of this tuner; load it with its Load object button')
         return scene
 

@@ -46,16 +46,17 @@ class Studio:
         self.glsl = glsl
         self.turn = asyncio.Lock()  # first come, first served; whoever leaves while waiting is passed over
         self._thread = ThreadPoolExecutor(1, "studio")
-        self._thread.submit(self._open).result()
+        self.renderer = self._thread.submit(self._open).result()
 
-    def _open(self) -> None:
+    def _open(self) -> Renderer:
         renderer = shared_renderer()
         renderer.bakes = AtHand(BAKES_KEPT)
         renderer.gpu.programs.root = self.glsl
+        return renderer
 
     async def do(self, work: Callable[[Renderer], Result]) -> Result:
         """`work(renderer)` on the thread that draws, after what was asked of it before."""
-        return await asyncio.get_running_loop().run_in_executor(self._thread, lambda: work(shared_renderer()))
+        return await asyncio.get_running_loop().run_in_executor(self._thread, work, self.renderer)
 
     async def keep(self, key: Hashable, value: Any) -> None:
         """What an `Unprepared` picture lacked is at hand from now on."""
@@ -71,7 +72,7 @@ class Studio:
 
     def close(self) -> bool:
         """Free the context; False where a picture is still being drawn after `LEAVE_S`, which nothing can stop."""
-        released = self._thread.submit(lambda: shared_renderer().gpu.context.release())
+        released = self._thread.submit(self.renderer.gpu.context.release)
         self._thread.shutdown(wait=False)
         return not wait([released], LEAVE_S).not_done
 
