@@ -41,6 +41,14 @@ def rendered(changes: dict[str, Any], folder: Path) -> Pixels:
     return np.asarray(Image.open(path).convert("RGB"))
 
 
+def by_hand(page: Page, url: str) -> Talk:
+    """The page with its first picture, and a clock that stands still unless it is told to run."""
+    page.clock.install(time=0)
+    talk = opened(page, url)
+    page.clock.pause_at(3600)
+    return talk
+
+
 def test_the_canvas_holds_the_rendered_picture_pixel_by_pixel(page: Page, url: str, tmp_path: Path) -> None:
     talk = opened(page, url)
     assert np.array_equal(on_canvas(page)[..., :3], rendered({}, tmp_path))
@@ -116,13 +124,16 @@ def test_elevation_ends_at_the_poles(page: Page, url: str) -> None:
 
 
 def test_the_wheel_zooms_from_the_fitted_distance_in_one_step(page: Page, url: str) -> None:
-    talk = opened(page, url)
+    talk = by_hand(page, url)
     page.mouse.move(*middle(page))
-    for _ in range(3):
-        page.mouse.wheel(0, 100)
-    talk.settled(after=1)
     fitted = 1 / np.sin(np.radians(BASE.camera.field_of_view / 2))
-    assert talk.changes == {"camera.distance": pytest.approx(fitted * np.exp(0.3), rel=1e-3)}
+    for turn in range(1, 4):
+        page.mouse.wheel(0, 100)
+        there = pytest.approx(fitted * np.exp(0.1 * turn), rel=1e-3)
+        wait(page, lambda there=there: talk.changes == {"camera.distance": there})
+    assert talk.of("wish")[-1]["moving"]
+    page.clock.run_for(1000)  # the hand is off the wheel
+    assert not talk.settled()["moving"]
     page.locator("#undo").click()
     wait(page, lambda: talk.changes == {})
 
@@ -290,14 +301,6 @@ def test_an_error_keeps_the_last_good_picture(page: Page, url: str) -> None:
 def tab(page: Page, name: str) -> None:
     """Open one of the panel's tabs."""
     page.get_by_role("tab", name=name).click()
-
-
-def by_hand(page: Page, url: str) -> Talk:
-    """The page with its first picture, and a clock that stands still unless it is told to run."""
-    page.clock.install(time=0)
-    talk = opened(page, url)
-    page.clock.pause_at(3600)
-    return talk
 
 
 def test_auto_rotation_keeps_to_the_clock(page: Page, url: str) -> None:

@@ -5,7 +5,7 @@
 import { picked } from "./lights.js";
 
 const SLOP_PX = 6; // a finger trembles by less
-const WHEEL_PAUSE_MS = 250; // after which the next turn of the wheel is another gesture
+const PAUSE_MS = 250; // after which the next turn of the wheel, or tap on a key, is another gesture
 const SMALLEST_PX = 100; // of a picture, and of what stands there before the first
 const KEY_DEGREES = 5;
 const KEY_ZOOM = 1.05;
@@ -150,15 +150,17 @@ function wheel(place, moves) {
       const pixels = event.deltaY * [1, 16, 400][event.deltaMode]; // pixels, lines, pages
       moves.zoom(Math.exp(pixels * (event.ctrlKey ? 0.01 : 0.001))); // a touchpad's pinch comes as a small Ctrl-wheel
       clearTimeout(pause);
-      pause = setTimeout(() => moves.settings.settle(), WHEEL_PAUSE_MS);
+      pause = setTimeout(() => moves.settings.settle(), PAUSE_MS);
     },
     { passive: false },
   );
 }
 
-// While the picture has the focus. Keys held together are one gesture.
+// While the picture has the focus. Keys held together are one gesture, and so are taps in quick succession: a picture as
+// it will be, drawn between two of them, would keep the second waiting.
 function keys(place, moves, settings) {
   const held = new Set();
+  let pause = null;
   const act = ({ key, shiftKey }) => {
     if (key in KEYS) shiftKey ? moves.light(...KEYS[key]) : moves.turn(...KEYS[key]);
     else if (key in ZOOMS) moves.zoom(ZOOMS[key]);
@@ -174,9 +176,12 @@ function keys(place, moves, settings) {
   place.addEventListener("keydown", (event) => {
     if (event.ctrlKey || event.metaKey || event.altKey || !act(event)) return;
     event.preventDefault();
+    clearTimeout(pause);
     held.add(event.code);
   });
-  place.addEventListener("keyup", ({ code }) => held.delete(code) && !held.size && release());
+  place.addEventListener("keyup", ({ code }) => {
+    if (held.delete(code) && !held.size) pause = setTimeout(release, PAUSE_MS);
+  });
   place.addEventListener("blur", () => held.size && release());
 }
 
