@@ -1,4 +1,6 @@
-"""What the page asks for besides frames: pictures for a grid, a material to start from, an object to load."""
+"""What the page asks for besides frames: pictures for a grid, a material to start from, an object to load,
+the shaders read again.
+"""
 
 from typing import Annotated
 
@@ -11,6 +13,7 @@ from fakesss.media import medium_named
 from fakesss.problem import BadInput, Strict
 from fakesss.scene import Pixels, Scene
 from fakesss.tuner.frames import PICTURE, Asked
+from fakesss.tuner.reload import read_again
 from fakesss.tuner.state import AtTuner
 from fakesss.tuner.uploads import MOST_BYTES
 from fakesss.tuner.wishes import Settings
@@ -54,6 +57,13 @@ def check_smaller(size: tuple[int, int], scene: Scene) -> None:
     if size[0] > scene.size[0] or size[1] > scene.size[1]:
         given, own = (f"{width}x{height}" for width, height in (size, scene.size))
         raise BadInput(f"size {given}: is more than the scene's own {own}; ask for less")
+
+
+@router.post("/reload")
+async def reload(tuner: AtTuner) -> JSONResponse:
+    """The shaders as they are now, for everybody who looks: where a change of a file is not noticed by itself."""
+    await read_again(tuner, "The shaders were read again.")
+    return JSONResponse({})
 
 
 @router.post("/medium")
