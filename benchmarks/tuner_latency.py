@@ -4,9 +4,10 @@
 the picture, the wheel, a slider's thumb, movements 16 ms apart. Measured in the page by tuner_probe.js, which the
 page's scripts do not know of: from the time stamp of the *first* input that a picture answers (what the operating
 system would give it; Chromium gathers movements until its next frame) until the picture has been drawn on the canvas.
-Nothing is left out: time spent waiting for the frame before counts.
+Nothing is left out: time spent waiting for the frame before counts, which is mostly its drawing. *Newest* is from the
+last input that the picture answers, so how old the picture is that one sees.
 
-*Outside drawing* is 1 - draw / total, with the server's own time of drawing; *answer* is the same from the wish's
+*Outside drawing* is 1 - draw / total, with the server's own time of drawing; *of answer* the same from the wish's
 leaving the page, so without what the input waited for the frame before it. *Still* is from letting go until the full
 picture, a PNG with all its samples, is on the canvas.
 """
@@ -51,11 +52,13 @@ class Answered:
     """One picture while something moved: milliseconds."""
 
     total: float  # first input to canvas
+    newest: float  # last input to canvas
     held: float  # first input to the wish's leaving
     wait: float  # at the server, for its turn
     draw: float
     encode: float
-    rest: float  # both ways, decoding, drawing on the canvas
+    travel: float  # both ways, and threads waking
+    show: float  # decoding, drawing on the canvas
 
 
 @dataclass(frozen=True)
@@ -69,13 +72,15 @@ class Row:
     per_second: float
     median: float
     p95: float
+    newest: float
     draw: float
     outside_drawing: float  # median of the share, 0..1
     outside_drawing_of_answer: float
     held: float
     wait: float
     encode: float
-    rest: float
+    travel: float
+    show: float
     width: int  # of the moving pictures, the most frequent
     still: float
 
@@ -104,7 +109,7 @@ def opened(browser: Browser, url: str) -> Page:
     page = browser.new_context(viewport=WINDOW).new_page()
     page.add_init_script(path=HERE / "tuner_probe.js")
     page.goto(url)
-    page.wait_for_function(STILL, timeout=120_000)
+    page.wait_for_function(STILL, timeout=60_000)
     return page
 
 
@@ -178,7 +183,7 @@ def performed(pages: Sequence[Page], gesture: str, moves: int) -> float:
     for movement in movements:
         movement.__exit__(None, None, None)
     for page in pages:
-        page.wait_for_function(STILL, timeout=120_000)
+        page.wait_for_function(STILL, timeout=60_000)
     return seconds
 
 
@@ -192,8 +197,10 @@ def answered(notes: dict[str, Any]) -> list[Answered]:
         if not inputs or not frame:
             continue
         times, first = frame["times"], min(inputs)
-        rest = frame["shown"] - wish["at"] - times["wait"] - times["draw"] - times["encode"]
-        found.append(Answered(frame["shown"] - first, wish["at"] - first, rest=rest, **times))
+        travel = frame["came"] - wish["at"] - times["wait"] - times["draw"] - times["encode"]
+        total, newest = frame["shown"] - first, frame["shown"] - max(inputs)
+        show = frame["shown"] - frame["came"]
+        found.append(Answered(total, newest, wish["at"] - first, travel=travel, show=show, **times))
     return found
 
 
@@ -214,13 +221,15 @@ def summary(what: tuple[str, int, int], notes: Sequence[dict[str, Any]], seconds
         per_second=len(pictures) / seconds / len(notes),
         median=statistics.median(totals),
         p95=float(np.percentile(totals, 95)),
+        newest=median(lambda one: one.newest),
         draw=median(lambda one: one.draw),
         outside_drawing=median(lambda one: 1 - one.draw / one.total),
         outside_drawing_of_answer=median(lambda one: 1 - one.draw / (one.total - one.held)),
         held=median(lambda one: one.held),
         wait=median(lambda one: one.wait),
         encode=median(lambda one: one.encode),
-        rest=median(lambda one: one.rest),
+        travel=median(lambda one: one.travel),
+        show=median(lambda one: one.show),
         width=statistics.mode(widths),
         still=float(statistics.median(until_still(page) for page in notes)),
     )

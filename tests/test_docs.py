@@ -14,7 +14,8 @@ import fakesss.cli_measure
 import fakesss.cli_picture
 import fakesss.cli_power
 import fakesss.cli_study
-import fakesss.cli_survey  # noqa: F401  (all add their commands)
+import fakesss.cli_survey
+import fakesss.cli_tune  # noqa: F401  (all add their commands)
 from analysis.plan import AnalysisPlan, Comparison, EquivalencePlan, Exclusions, PlannedContrast
 from fakesss.cli import commands
 from fakesss.pipeline import build
