@@ -87,7 +87,7 @@ function startSave({ settings, start, say }) {
   button.setAttribute("aria-keyshortcuts", "Control+S");
   button.addEventListener("click", open);
   addEventListener("keydown", (event) => {
-    if (event.key !== "s" || !(event.ctrlKey || event.metaKey) || event.altKey || event.shiftKey) return;
+    if (event.key.toLowerCase() !== "s" || !(event.ctrlKey || event.metaKey) || event.altKey || event.shiftKey) return;
     event.preventDefault(); // the browser would save the page
     if (!document.querySelector("dialog[open]")) open();
   });

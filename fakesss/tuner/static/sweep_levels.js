@@ -55,15 +55,14 @@ export function spaced(from, to, count, isRatios, scale) {
     const share = index / (count - 1);
     if (share === 0 || share === 1) return share ? to : from;
     const value = isRatios ? from * (to / from) ** share : from + share * (to - from);
-    return sensible(value, Math.abs(isRatios ? value : (to - from) / (count - 1)), scale);
+    return isRatios ? sensible(value, value, 3, scale) : sensible(value, (to - from) / (count - 1), 2, scale);
   });
   return [...new Set(levels)];
 }
 
-// `value` with two digits of `size`, three where the value itself is the size; whole or a multiple where the field is.
-function sensible(value, size, scale) {
-  const digits = size === Math.abs(value) ? 2 : 1; // after the first
-  const unit = scale.multiple ?? (scale.isWhole ? 1 : 10 ** (Math.floor(Math.log10(size || 1)) - digits));
+// `value` as exact as `digits` digits of `size` are; whole or a multiple where the field is.
+function sensible(value, size, digits, scale) {
+  const unit = scale.multiple ?? (scale.isWhole ? 1 : 10 ** (Math.floor(Math.log10(Math.abs(size) || 1)) + 1 - digits));
   return Number((Math.round(value / unit) * unit).toPrecision(12));
 }
 
