@@ -37,10 +37,11 @@ class Pace:
 
     def model(self) -> tuple[float, float]:
         """a and b, in ms and ms a sample; both 0 while nothing is known."""
-        if self.moving is None or self.still is None:
-            known = self.moving or self.still
-            return (0.0, known[1] / known[0]) if known else (0.0, 0.0)
-        (few, fast), (many, slow) = sorted((self.moving, self.still))
-        each = max(slow - fast, 0.0) / (many - few) if many > few else 0.0
-        each = min(each, fast / few)
-        return fast - each * few, each
+        known = self.moving or self.still
+        if known is None:
+            return 0.0, 0.0
+        few, many = sorted((known, self.still or known))
+        if many[0] == few[0] or many[1] <= few[1]:  # they do not tell, or one is of a time when the machine was slow
+            return 0.0, known[1] / known[0]
+        each = min((many[1] - few[1]) / (many[0] - few[0]), few[1] / few[0])
+        return few[1] - each * few[0], each

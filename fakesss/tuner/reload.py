@@ -1,27 +1,25 @@
 """Shaders that are edited while the tuner runs are read again."""
 
 import asyncio
-import logging
+import contextlib
 from pathlib import Path
 
 from fakesss.tuner.state import Tuner
 
-log = logging.getLogger(__name__)
-
 EVERY_S = 0.3  # a look at some sixty files takes less than a millisecond
+
+NAMED = 3  # so many files, and no more, by name
 
 Stamp = tuple[int, int]  # time of change, ns, and size
 
 
 def stamps(folder: Path) -> dict[str, Stamp]:
-    """Every file of the folder; one that vanishes meanwhile is left out."""
+    """Every file of the folder; one that vanishes meanwhile is left out, and so is a whole folder."""
     found = {}
-    for path in folder.iterdir():
-        try:
+    for path in folder.glob("*"):
+        with contextlib.suppress(OSError):
             status = path.stat()
-        except OSError:
-            continue
-        found[path.name] = status.st_mtime_ns, status.st_size
+            found[path.name] = status.st_mtime_ns, status.st_size
     return found
 
 
@@ -30,19 +28,16 @@ async def watch_shaders(tuner: Tuner) -> None:
     known = stamps(tuner.shaders)
     while True:
         await asyncio.sleep(EVERY_S)
-        try:
-            now = stamps(tuner.shaders)
-        except OSError as error:
-            log.warning("%s: cannot be read (%s)", tuner.shaders, error)
-            continue
+        now = stamps(tuner.shaders)
         changed = sorted(name for name in now.keys() | known.keys() if now.get(name) != known.get(name))
         known = now
         if changed:
-            await read_again(tuner, f"Read again: {', '.join(changed)}.")
+            await read_again(tuner, changed)
 
 
-async def read_again(tuner: Tuner, sentence: str) -> None:
+async def read_again(tuner: Tuner, changed: list[str]) -> None:
     """Forget the compiled shaders and say so."""
+    sentence = f"Read again: {', '.join(changed)}." if len(changed) <= NAMED else f"Read again: {len(changed)} shaders."
     await tuner.studio.read_shaders_again()
     for viewer in tuple(tuner.viewers):
         viewer.say("info", sentence)

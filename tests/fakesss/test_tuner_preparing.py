@@ -1,0 +1,222 @@
+"""What takes long is made beside the drawing: something stands in, and what nobody waits for is given up."""
+
+import threading
+from collections.abc import Iterator
+from pathlib import Path
+from typing import Any
+
+import pytest
+from tuner_server import Frame, Tab, tab, tuned
+from waiting import until
+
+from fakesss import occlusion
+from fakesss.patience import Unwanted, is_wanted, while_wanted
+from fakesss.problem import BadInput
+from fakesss.renderer import render_file
+from fakesss.scene import Scene
+from fakesss.shapes import load_object
+from fakesss.tuner.preparing import stand_ins
+
+BASE = Scene(object="sphere:1000", size=(32, 32), occlusion={"rays": 16})  # type: ignore[arg-type]
+
+
+@pytest.fixture
+def url(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[str]:
+    """With nothing in the cache."""
+    monkeypatch.setenv("FAKESSS_CACHE", str(tmp_path / "cache"))
+    with tuned(BASE, tmp_path) as address:
+        yield address
+
+
+class Bake:
+    """Stands before the casting of rays: notes how many are asked for, and holds it until `go` is set."""
+
+    def __init__(self) -> None:
+        self.asked: list[int] = []
+        self.given_up: list[int] = []
+        self.go = threading.Event()
+        self.bake = occlusion.bake_occlusion
+
+    def __call__(self, mesh: Any, rays: int, sampling: Any) -> Any:
+        self.asked.append(rays)
+        while not self.go.wait(0.01):
+            if not is_wanted():
+                self.given_up.append(rays)
+                raise Unwanted
+        return self.bake(mesh, rays, sampling)
+
+
+@pytest.fixture
+def held(monkeypatch: pytest.MonkeyPatch) -> Iterator[Bake]:
+    bake = Bake()
+    monkeypatch.setattr(occlusion, "bake_occlusion", bake)
+    yield bake
+    bake.go.set()
+
+
+def bytes_of(scene: Scene, folder: Path) -> bytes:
+    render_file(scene, folder / "picture.png", timed=False)
+    return (folder / "picture.png").read_bytes()
+
+
+def stand_in(viewer: Tab, changes: dict[str, Any], **wish: Any) -> Frame:
+    """The first frame of a wish."""
+    viewer.wish(changes, **wish)
+    return viewer.frame()
+
+
+@pytest.mark.gl
+def test_the_first_picture_has_no_occlusion_until_it_is_baked(url: str, held: Bake, tmp_path: Path) -> None:
+    with tab(url) as viewer:
+        viewer.wish()
+        while not isinstance(answer := viewer.next(), Frame):
+            assert answer.get("level") != "error", answer
+            if answer["type"] == "again":
+                viewer.wish()
+        assert answer.header["stand_in"] == "Occlusion with 16 rays a vertex is not made yet; drawn without."
+        assert answer.image == bytes_of(BASE.replace({"occlusion.enabled": False}), tmp_path)
+        what = "Occlusion with 16 rays a vertex"
+        assert viewer.message(type="working", what=what)["done"] is False
+        held.go.set()
+        viewer.message(type="again")
+        assert viewer.message(type="working", what=what)["done"] is True
+        final = stand_in(viewer, {})
+    assert final.header["stand_in"] == "" and final.image == bytes_of(BASE, tmp_path)
+
+
+@pytest.mark.gl
+def test_the_last_rays_stand_in_for_the_next(url: str, held: Bake, tmp_path: Path) -> None:
+    with tab(url) as viewer:
+        held.go.set()
+        viewer.finished()
+        held.go.clear()
+        changes = {"occlusion.rays": 24, "camera.azimuth": 20.0}
+        frame = stand_in(viewer, changes)
+        assert frame.header["stand_in"] == "Occlusion with 24 rays a vertex is not made yet; drawn with 16."
+        assert frame.image == bytes_of(BASE.replace({**changes, "occlusion.rays": 16}), tmp_path)
+        held.go.set()
+        viewer.message(type="again")
+        assert stand_in(viewer, changes).image == bytes_of(BASE.replace(changes), tmp_path)
+
+
+@pytest.mark.gl
+def test_a_slider_on_its_way_bakes_nothing(url: str, held: Bake) -> None:
+    held.go.set()
+    with tab(url) as viewer:
+        viewer.finished()
+        for rays in range(20, 30):
+            frame = stand_in(viewer, {"occlusion.rays": rays}, moving=True)
+            assert f"with {rays} rays" in frame.header["stand_in"]
+        viewer.finished({"occlusion.rays": 30})
+    assert held.asked == [16, 30]
+
+
+@pytest.mark.gl
+def test_what_nobody_waits_for_is_given_up(url: str, held: Bake) -> None:
+    """Another number of rays is asked for before those of the last are cast; then the tab is closed."""
+    held.go.set()
+    with tab(url) as viewer:
+        viewer.finished()
+        held.go.clear()
+        for rays in (24, 32):
+            stand_in(viewer, {"occlusion.rays": rays})
+            until(lambda rays=rays: held.asked[-1] == rays)  # type: ignore[misc]
+        assert held.given_up == [24]
+    until(lambda: held.given_up == [24, 32])
+
+
+@pytest.mark.gl
+def test_two_who_wait_for_the_same_share_it(url: str, held: Bake) -> None:
+    held.go.set()
+    with tab(url) as first:
+        first.finished()
+        held.go.clear()
+        with tab(url) as second:
+            for viewer in (first, second):
+                stand_in(viewer, {"occlusion.rays": 24})
+            until(lambda: held.asked[-1] == 24)
+        held.go.set()  # the second has left, the first still waits
+        first.message(type="again")
+        assert stand_in(first, {"occlusion.rays": 24}).header["stand_in"] == ""
+    assert held.asked == [16, 24] and held.given_up == []
+
+
+@pytest.mark.gl
+def test_the_last_object_stays_while_the_next_is_made(
+    url: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    go, changes = threading.Event(), {"object": "torus:1000"}
+
+    def slowly(name: str) -> Any:
+        assert go.wait(60)
+        return load_object(name)
+
+    with tab(url) as viewer:
+        viewer.finished()
+        monkeypatch.setattr("fakesss.passes.mesh.load_object", slowly)
+        frame = stand_in(viewer, changes)
+        assert frame.header["stand_in"] == 'The object "torus:1000" is not made yet; "sphere:1000" is drawn meanwhile.'
+        go.set()
+        assert viewer.finished({"object": "torus:1000"}).image == bytes_of(
+            BASE.replace({"object": "torus:1000"}), tmp_path
+        )
+
+
+@pytest.mark.gl
+def test_an_object_that_cannot_be_read_is_said(url: str, monkeypatch: pytest.MonkeyPatch) -> None:
+    def unreadable(name: str) -> Any:
+        raise BadInput(f"{name}: its disk is gone")
+
+    with tab(url) as viewer:
+        viewer.finished()
+        monkeypatch.setattr("fakesss.passes.mesh.load_object", unreadable)
+        stand_in(viewer, {"object": "torus:1000"})
+        assert viewer.message(level="error")["text"] == "torus:1000: its disk is gone"
+        assert viewer.message(type="working", done=True)
+        viewer.finished()
+
+
+@pytest.mark.gl
+@pytest.mark.parametrize(
+    "changes",
+    [
+        {"material.thickness": "local", "layers.rays": 24},
+        {"layers.faces": 200},
+        {"object": "torus:1000", "material.thickness": "local", "layers.faces": 300},
+        {"occlusion.sampling": "uniform"},
+    ],
+)
+def test_everything_that_is_made_is_waited_for(url: str, tmp_path: Path, changes: dict[str, Any]) -> None:
+    with tab(url) as viewer:
+        viewer.finished()
+        assert stand_in(viewer, changes).header["stand_in"]
+        assert viewer.finished(changes).image == bytes_of(BASE.replace(changes), tmp_path)
+
+
+@pytest.mark.gl
+@pytest.mark.parametrize("view", ["occlusion", "ambient", "second"])
+def test_views_wait_too(url: str, held: Bake, view: str) -> None:
+    with tab(url) as viewer:
+        held.go.set()
+        assert viewer.finished({"occlusion.enabled": False}, view=view).header["view"] == view
+
+
+def test_rays_nobody_waits_for_are_not_cast(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setenv("FAKESSS_CACHE", str(tmp_path))
+    mesh = load_object("sphere:1000")
+    with while_wanted(lambda: False), pytest.raises(Unwanted):
+        occlusion.bake_occlusion(mesh, 64)
+    assert not occlusion.bake_occlusion(mesh, 64).cached
+    assert is_wanted()
+
+
+def kinds(kind: str, scene: Scene, last: Scene | None) -> list[Any]:
+    return [dict(changes) for changes, _ in stand_ins(kind, scene, last)]
+
+
+def test_the_nearest_stand_in_comes_first() -> None:
+    last = BASE.replace({"occlusion.rays": 64, "object": "torus:1000"})
+    assert kinds("occlusion", BASE, None) == [{"occlusion.enabled": False}]
+    assert kinds("occlusion", BASE, last)[0]["occlusion.rays"] == 64
+    assert kinds("mesh", BASE, last) == [{"object": "torus:1000"}] and kinds("mesh", BASE, None) == []
+    assert kinds("coarse_mesh", BASE.replace({"layers.faces": 100}), last) == [{"layers.faces": None}]
