@@ -240,7 +240,9 @@ def test_two_device_pixels_a_css_pixel(browser: Browser, url: str) -> None:
         assert box
         assert (box["width"], box["height"]) == (SIZE / 2, SIZE / 2)
         assert on_canvas(page).shape == (SIZE, SIZE, 4)
-        assert page.locator("#overlay").evaluate("canvas => canvas.width") == SIZE
+        tab(page, "Shader")
+        page.locator("#show-box").check()
+        assert on_canvas(page, "#overlay").shape == (SIZE, SIZE, 4)
 
 
 def test_a_picture_without_room_is_said_to_be_smaller(page: Page, url: str) -> None:

@@ -15,6 +15,7 @@ export class Overlay {
   #canvas = document.getElementById("overlay");
   #drawing = this.#canvas.getContext("2d");
   #header = null;
+  #isEmpty = true;
   #shown = { box: false, axes: false };
 
   constructor({ stage }) {
@@ -45,11 +46,11 @@ export class Overlay {
   }
 
   #draw() {
-    const { left, top, width, height } = this.stage.canvas.style;
-    Object.assign(this.#canvas.style, { left, top, width, height });
-    this.#canvas.width = Math.round(parseFloat(width) * devicePixelRatio) || 1; // clears it
-    this.#canvas.height = Math.round(parseFloat(height) * devicePixelRatio) || 1;
-    if (!this.#header?.matrix || !this.stage.isLive) return; // another picture may have another camera
+    const isWanted = this.#header?.matrix && this.stage.isLive && (this.box || this.axes); // others may have other cameras
+    if (!isWanted && this.#isEmpty) return;
+    this.#isEmpty = !isWanted;
+    this.#cover();
+    if (!isWanted) return;
     if (this.box) for (const [one, two] of EDGES) this.#line(this.#corner(one), this.#corner(two), 1);
     if (!this.axes) return;
     for (const [name, direction] of Object.entries(AXES)) {
@@ -57,6 +58,14 @@ export class Overlay {
       this.#line([0, 0, 0], end, 2);
       this.#label(name, end);
     }
+  }
+
+  // As large as the picture on the screen, in that one's pixels; and empty.
+  #cover() {
+    const { left, top, width, height } = this.stage.canvas.style;
+    Object.assign(this.#canvas.style, { left, top, width, height });
+    this.#canvas.width = Math.round(parseFloat(width) * devicePixelRatio) || 1;
+    this.#canvas.height = Math.round(parseFloat(height) * devicePixelRatio) || 1;
   }
 
   #corner(number) {

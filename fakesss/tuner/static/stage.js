@@ -115,11 +115,12 @@ export class Stage extends EventTarget {
     const { bitmap, size } = this.#other ?? this.#live ?? {};
     if (!bitmap) return;
     const [width, height] = size;
-    if (this.canvas.width !== width || this.canvas.height !== height) Object.assign(this.canvas, { width, height });
+    const isOtherSize = this.canvas.width !== width || this.canvas.height !== height;
+    if (isOtherSize) Object.assign(this.canvas, { width, height });
     else this.#drawing.clearRect(0, 0, width, height);
     this.#drawing.drawImage(bitmap, 0, 0, width, height);
     document.getElementById("caption").textContent = this.#caption();
-    this.#fit();
+    if (isOtherSize) this.#fit();
   }
 
   #caption() {

@@ -17,7 +17,7 @@ export function start({ connection, stage, say }) {
     text("latency", latencies.length ? `${Math.round(median(latencies))} ms` : "–");
     text("draw-ms", spent(header.times));
     text("mesh", `${header.faces.toLocaleString("en")} faces · ${header.vertices.toLocaleString("en")} vertices`);
-    if (!document.getElementById("passes").hidden) passes(header.passes);
+    if (!header.moving && !document.getElementById("passes").hidden) passes(header.passes);
   }
 
   stage.addEventListener("frame", ({ detail }) => {
@@ -31,7 +31,7 @@ export function start({ connection, stage, say }) {
     isDue = true;
     setTimeout(redraw, header.moving ? REDRAW_MS : 0);
   });
-  drawer("show-passes", "passes", () => header && passes(header.passes));
+  drawer("show-passes", "passes", () => stage.picture() && passes(stage.picture().header.passes));
   drawer("show-messages", "messages", () => (document.getElementById("log").scrollTop = 1e9));
   warnings(stage, say);
   notices(connection, stage);
@@ -75,7 +75,7 @@ function text(id, words) {
   document.getElementById(id).textContent = words;
 }
 
-// What ran, each with a bar, then what was left out and why.
+// What ran for the last still picture (moving ones are not timed), each with a bar, then what was left out and why.
 function passes(told) {
   const total = told.reduce((sum, { gpu_ms: ms }) => sum + (ms ?? 0), 0);
   const ordered = [...told.filter(({ kept }) => kept), ...told.filter(({ kept }) => !kept)];
