@@ -105,7 +105,7 @@ def draw(renderer: Renderer, asked: Asked) -> Drawn:
     """The picture, or the view of it, that is asked for. Raises `BadInput`, `ShaderError` and `studio.Unprepared`."""
     started = time.perf_counter()
     scene = asked.drawn
-    note, legend, has_camera = "", None, True
+    note, legend, has_camera, count = "", None, True, samples(scene)
     if asked.view == PICTURE:
         # timing takes no time, but draws shadow maps again that a moving picture could keep
         timed = not asked.moving or not any(light.shadows for light in lights_of(scene))
@@ -115,11 +115,12 @@ def draw(renderer: Renderer, asked: Asked) -> Drawn:
         image, kind = encoded(rendering, asked.moving)
         warnings = rendering.notes if asked.moving else rendering.warnings
     else:
-        from fakesss.tuner.looks import DRAWINGS, look  # loads matplotlib, which pictures never need
+        from fakesss.tuner.looks import DRAWINGS, ONE_SAMPLE, look  # loads matplotlib, which pictures never need
 
         plan, mesh = renderer.plan(scene, asked.forced)
-        pixels, note, legend = look(scene, asked.view, asked.moving)
+        pixels, note, legend = look(scene, asked.view)
         has_camera = asked.view not in DRAWINGS
+        count = scene.size[0] * scene.size[1] if asked.view in ONE_SAMPLE else count
         times, warnings = {}, mesh.repairs
         drawn = time.perf_counter()
         image, kind = (jpeg(pixels), "image/jpeg") if asked.moving else (encode_png8(pixels), "image/png")
@@ -139,7 +140,7 @@ def draw(renderer: Renderer, asked: Asked) -> Drawn:
         "legend": legend,
         "scene_sha256": scene.sha256(),
     }
-    return Drawn(image, header, samples(scene))
+    return Drawn(image, header, count)
 
 
 def samples(scene: Scene) -> int:

@@ -10,7 +10,6 @@ from typing import Any, NamedTuple, TypedDict
 import numpy as np
 from matplotlib import colormaps
 from numpy.typing import NDArray
-from PIL import Image
 
 from fakesss.contact_sheet import EXACT, MARK, OTHER, SOFTENED, Colour, Panel, Plot
 from fakesss.scene import Scene
@@ -25,8 +24,10 @@ LOOKS: Mapping[str, str] = {PICTURE: "picture", **{name: kind.title for name, ki
 DRAWINGS = frozenset(name for name, kind in KINDS.items() if kind.make in (landscape, profile))
 """Those that are not seen through the scene's camera: nothing of the scene can be laid over them."""
 
+ONE_SAMPLE = frozenset(name for name, kind in KINDS.items() if kind.reads)
+"""Those with one sample a pixel, however many the picture has."""
+
 STOPS = 33  # of a legend's colour scale; with straight lines between them colours are right to 6/255
-COARSE = 3  # a drawing has so many times fewer pixels a side while it moves
 ENDS = {  # of a colour map, in words
     "cividis_r": ("yellow", "dark blue"),
     "magma_r": ("pale", "black"),
@@ -70,23 +71,15 @@ class Look(NamedTuple):
     legend: Legend
 
 
-def look(scene: Scene, name: str, moving: bool = False) -> Look:
-    """The view called `name` at the scene's size; drawings have fewer pixels while `moving`.
+def look(scene: Scene, name: str) -> Look:
+    """The view called `name` at the scene's size.
 
     Draws with this thread's `shared_renderer`. Raises `BadInput` for what a user can mend.
     """
     seen = view(scene.replace({"alpha": False}) if scene.alpha else scene, name)
     if isinstance(seen, Plot):
-        return Look(drawing(seen, scene.size, moving and name == "relief"), *plot_words(name, seen))
+        return Look(seen.draw(scene.size), *plot_words(name, seen))
     return Look(seen.pixels(), panel_words(seen), legend(seen))
-
-
-def drawing(plot: Plot, size: tuple[int, int], coarse: bool) -> Bytes:
-    """A plot at `size`."""
-    if not coarse:
-        return plot.draw(size)
-    width, height = (max(1, side // COARSE) for side in size)
-    return np.asarray(Image.fromarray(plot.draw((width, height))).resize(size, Image.Resampling.BILINEAR))
 
 
 def plot_words(name: str, plot: Plot) -> tuple[str, Legend]:
