@@ -208,6 +208,7 @@ def test_a_picture_goes_to_the_stage_and_back(page: Page, talk: Talk) -> None:
 
 
 def test_what_cannot_be_or_cannot_be_told_apart_is_said(page: Page, talk: Talk, folder: Path) -> None:
+    vary(page, "down", "blur.kernel")
     vary(page, "across", "material.thickness_exponent", "10, -1")
     problem = factor(page, "across").locator(".problem")
     expect(problem).to_contain_text("at least 0")

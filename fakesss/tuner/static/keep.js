@@ -25,7 +25,6 @@ function startLink({ settings, say }) {
     text.value = address();
     result.textContent = "";
     dialog.showModal();
-    text.select();
     await copy();
   });
   document.getElementById("link-copy").addEventListener("click", copy);

@@ -49,8 +49,9 @@ class Sweep extends EventTarget {
     walkable(this.#table);
   }
 
-  // One or two, down before across: the last factor of a study varies fastest.
+  // One or two, down before across: the last factor of a study varies fastest. None while one of them has a mistake.
   get factors() {
+    if (this.forms.some(({ isBroken }) => isBroken)) return [];
     return this.forms.map(({ factor }) => factor).filter(Boolean);
   }
 

@@ -1,5 +1,5 @@
 // One setting that varies: which, and its levels. "change" follows whatever changes them.
-import { around, parsed, shown, spaced, variables } from "./sweep_levels.js";
+import { around, MOST_LEVELS, parsed, shown, spaced, variables } from "./sweep_levels.js";
 
 export class FactorForm extends EventTarget {
   #variable = null; // of `variables`; null: nothing varies here
@@ -26,6 +26,11 @@ export class FactorForm extends EventTarget {
     if (!this.#variable || !this.#levels.length) return null;
     const { name, path } = this.#variable;
     return { name, path, levels: this.#levels, labels: this.#levels.map((level) => this.#label(level)) };
+  }
+
+  // Something varies, but at levels that cannot be read.
+  get isBroken() {
+    return this.#variable !== null && !this.#levels.length;
   }
 
   // The settings have changed: there may be other lights, and another value is the one now.
@@ -81,7 +86,8 @@ export class FactorForm extends EventTarget {
       mark(input, problem);
       return { value, problem };
     });
-    const count = Math.min(Math.max(Math.round(this.count.valueAsNumber) || 2, 2), 9);
+    const count = Math.min(Math.max(Math.round(this.count.valueAsNumber) || 2, 2), MOST_LEVELS);
+    if (this.count.value !== "") this.count.value = count;
     const isRatios = this.spacing.value === "ratios";
     const problem = from.problem ?? to.problem ?? (isRatios && !(from.value > 0 && to.value > 0) && "Equal ratios need numbers above 0.");
     if (problem) return this.#take({ problem });

@@ -21,6 +21,7 @@ export function startStudy(sweep, { settings, say }) {
   function suggest() {
     const { factors } = sweep;
     part.disabled = !factors.length;
+    if (!factors.length) return;
     const names = factors.map(({ name }) => name).reverse().join(" by ");
     if (!isOwnTitle) title.value = names.charAt(0).toUpperCase() + names.slice(1);
     if (!isOwnFolder) folder.value = plain(title.value);
