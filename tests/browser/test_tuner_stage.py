@@ -391,6 +391,10 @@ def test_box_and_axes_are_over_the_picture_and_not_in_it(page: Page, url: str) -
     assert on_canvas(page, "#overlay")[round(places(talk.changes, (0.5, 0, 0))[0]), :, 3].any()
     assert (on_canvas(page, "#overlay")[..., 3] > 0).sum() > (box[..., 3] > 0).sum()
     assert np.array_equal(on_canvas(page), before)
+    page.locator("#previous").click()  # which has a camera of its own
+    wait(page, lambda: not on_canvas(page, "#overlay").any())
+    page.locator("#previous").click()
+    wait(page, lambda: on_canvas(page, "#overlay").any())
 
 
 def places(changes: dict[str, Any], point: tuple[float, ...]) -> tuple[float, float]:

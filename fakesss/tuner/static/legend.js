@@ -7,7 +7,7 @@ export function start({ stage }) {
   const place = Object.assign(document.createElement("p"), { id: "legend", ariaHidden: "true", hidden: true });
   document.getElementById("view").after(place); // in a line that is there anyway: the picture stays where it is
   let shown = null;
-  for (const event of ["frame", "live", "fit"]) stage.addEventListener(event, show);
+  for (const event of ["frame", "show", "live"]) stage.addEventListener(event, show);
 
   function show({ detail }) {
     shown = detail?.header ? (detail.header.legend ?? null) : shown;

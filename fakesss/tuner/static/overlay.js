@@ -1,10 +1,10 @@
 // The bounding box and the axes over the picture, never part of it.
 
-const AXES = { x: [1, 0, 0], y: [0, 1, 0], z: [0, 0, 1] };
-const REACH = 1.15; // of the axes, in sphere radii
+const AXES = { x: [1, 0, 0], y: [0, 1, 0], z: [0, 0, 1] }; // to the bounding sphere
 const EDGES = [0, 1, 2, 3, 4, 5, 6, 7].flatMap((corner) =>
   [1, 2, 4].filter((bit) => !(corner & bit)).map((bit) => [corner, corner | bit]),
 );
+const LABEL_PX = 14;
 const NEAR = 1e-3; // of clip w: what is at the camera or behind it is left out
 
 export function start(context) {
@@ -24,7 +24,7 @@ export class Overlay {
       this.#header = detail.header;
       this.#draw();
     });
-    for (const kind of ["fit", "live"]) stage.addEventListener(kind, () => this.#draw());
+    for (const kind of ["fit", "show", "live"]) stage.addEventListener(kind, () => this.#draw());
   }
 
   get box() {
@@ -54,9 +54,8 @@ export class Overlay {
     if (this.box) for (const [one, two] of EDGES) this.#line(this.#corner(one), this.#corner(two), 1);
     if (!this.axes) return;
     for (const [name, direction] of Object.entries(AXES)) {
-      const end = direction.map((share) => share * REACH);
-      this.#line([0, 0, 0], end, 2);
-      this.#label(name, end);
+      this.#line([0, 0, 0], direction, 2);
+      this.#label(name, direction);
     }
   }
 
@@ -86,15 +85,20 @@ export class Overlay {
     }
   }
 
+  // Beside the end of an axis, within the picture.
   #label(name, at) {
     const point = this.#clip(at);
     if (point[3] < NEAR) return;
-    const size = 14 * devicePixelRatio;
+    const size = LABEL_PX * devicePixelRatio;
     const [x, y] = this.#pixel(point);
+    const place = [
+      Math.min(Math.max(x + size * 0.7, size), this.#canvas.width - size),
+      Math.min(Math.max(y - size * 0.5, size), this.#canvas.height - size),
+    ];
     Object.assign(this.#drawing, { font: `600 ${size}px system-ui, sans-serif`, textAlign: "center", textBaseline: "middle" });
     Object.assign(this.#drawing, { strokeStyle: "#000", lineWidth: 3 * devicePixelRatio, fillStyle: "#fff" });
-    this.#drawing.strokeText(name, x + size * 0.7, y - size * 0.5);
-    this.#drawing.fillText(name, x + size * 0.7, y - size * 0.5);
+    this.#drawing.strokeText(name, ...place);
+    this.#drawing.fillText(name, ...place);
   }
 
   // Homogeneous clip coordinates of a point in the world.

@@ -1,7 +1,8 @@
 // The picture, pixel by pixel, and what is to be said of it.
 //
 // Events: "frame" ({header, asked, latency}) when any frame is on the canvas, "still" after one that is as the scene
-// says, "live" when the live picture is back in its place, "view" when another intermediate is looked at.
+// says, "show" when another picture was put in its place, "live" when it is back, "fit" when it has another place or size
+// on the screen, "view" when another intermediate is looked at.
 
 const AS_IT_IS = { premultiplyAlpha: "none", colorSpaceConversion: "none" };
 const INPUTS = ["pointerdown", "pointermove", "pointerup", "wheel", "keydown", "keyup", "input", "change", "click"];
@@ -70,6 +71,7 @@ export class Stage extends EventTarget {
     this.#other?.bitmap.close();
     this.#other = { bitmap, size: [bitmap.width, bitmap.height], caption };
     this.#paint();
+    this.#tell("show");
   }
 
   showLive() {
