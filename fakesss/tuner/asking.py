@@ -13,7 +13,7 @@ from fakesss.media import medium_named
 from fakesss.problem import BadInput, Strict
 from fakesss.scene import Pixels, Scene
 from fakesss.tuner.frames import PICTURE, Asked
-from fakesss.tuner.reload import read_again
+from fakesss.tuner.reload import read_again, stamps
 from fakesss.tuner.state import AtTuner
 from fakesss.tuner.uploads import MOST_BYTES
 from fakesss.tuner.wishes import Settings
@@ -62,7 +62,7 @@ def check_smaller(size: tuple[int, int], scene: Scene) -> None:
 @router.post("/reload")
 async def reload(tuner: AtTuner) -> JSONResponse:
     """The shaders as they are now, for everybody who looks: where a change of a file is not noticed by itself."""
-    await read_again(tuner, "The shaders were read again.")
+    await read_again(tuner, list(stamps(tuner.shaders)))
     return JSONResponse({})
 
 

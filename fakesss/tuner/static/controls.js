@@ -3,6 +3,8 @@ import { KINDS } from "./control.js";
 import { picked } from "./lights.js";
 import { isSame } from "./settings.js";
 
+const SOURCE = /^tuner: /; // where the server's sentences place what is wrong
+
 export function start({ settings, connection, start: facts }) {
   const elements = [...document.querySelectorAll(".control[data-kind]")];
   const controls = elements.map((element) => new KINDS[element.dataset.kind](element, settings));
@@ -43,7 +45,7 @@ function blame(controls, connection) {
     acquit();
     const isNamed = (name) => text.includes(`${name}:`) || text.includes(`${name} `);
     blamed = controls.find(({ path }) => isNamed(path) || isNamed(path.replace(/\.(?=[^.]*$)/, ": ")));
-    blamed?.tell(text);
+    blamed?.tell(text.replace(SOURCE, ""));
   });
 }
 

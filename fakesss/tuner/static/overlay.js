@@ -49,6 +49,7 @@ export class Overlay {
     const isWanted = this.#header?.matrix && this.stage.isLive && (this.box || this.axes); // others may have other cameras
     if (!isWanted && this.#isEmpty) return;
     this.#isEmpty = !isWanted;
+    this.#canvas.hidden = !isWanted; // or it would stay where the picture stood, in whatever window
     this.#cover();
     if (!isWanted) return;
     if (this.box) for (const [one, two] of EDGES) this.#line(this.#corner(one), this.#corner(two), 1);
