@@ -20,7 +20,7 @@ class Picked extends EventTarget {
 
 export const picked = new Picked();
 
-export function start({ settings, stage, say }) {
+export function start({ settings, say }) {
   const chips = document.getElementById("lights");
   const template = document.getElementById("light-chip");
   const add = document.getElementById("add-light");
@@ -64,9 +64,6 @@ export function start({ settings, stage, say }) {
   });
 
   settings.addEventListener("change", show);
-  picked.addEventListener("pick", () => {
-    stage.light = picked.index;
-    show();
-  });
+  picked.addEventListener("pick", show);
   show();
 }
