@@ -72,8 +72,9 @@ def first_sentence(error: ValidationError, model: type[BaseModel]) -> str:
     detail = next((d for d in details if d["type"] == "extra_forbidden"), branch(details))
     where = tuple(part for part in detail["loc"] if not is_tag(part))
     if detail["type"] == "extra_forbidden":
-        names = fields_at(model, where[:-1])
-        return f"{dotted(where)}: unknown key; {nearest(str(where[-1]), names)}"
+        *above, key = detail["loc"]  # a key may be called as a tag is
+        where = tuple(part for part in above if not is_tag(part))
+        return f"{dotted((*where, key))}: unknown key; {nearest(str(key), fields_at(model, where))}"
     if detail["type"] == "missing":
         return f"{dotted(where)}: is missing; add it"
     shown = f"{detail['input']!r}: " if not isinstance(detail["input"], Mapping) else ""

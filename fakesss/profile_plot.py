@@ -13,6 +13,7 @@ from fakesss.contact_sheet import EMPTY, EXACT, FAINT, INK, MARK, SOFTENED
 
 Float = NDArray[np.float64]
 DPI = 100
+SMALLEST = 120  # pixels a side that margins and labels are made for
 TYPE = {"fontsize": 8, "color": "#{:02x}{:02x}{:02x}".format(*FAINT)}
 
 
@@ -30,7 +31,8 @@ def profile_plot(profile: Profile, size: tuple[int, int]) -> NDArray[np.uint8]:
     """8-bit RGB (height, width, 3) of `size` (width, height): both thicknesses, and where the exact one jumps."""
     figure = Figure(figsize=(size[0] / DPI, size[1] / DPI), dpi=DPI, facecolor=rgb(EMPTY))
     canvas: Any = FigureCanvasAgg(figure)  # matplotlib leaves its methods untyped
-    axes = figure.add_axes((52 / size[0], 42 / size[1], 1 - 66 / size[0], 1 - 56 / size[1]), facecolor=rgb(EMPTY))
+    across, down = (min(1 / side, 1 / SMALLEST) for side in size)  # of a pixel; margins of a small plot shrink with it
+    axes = figure.add_axes((52 * across, 42 * down, 1 - 66 * across, 1 - 56 * down), facecolor=rgb(EMPTY))
     for edge in profile.edges:
         axes.axvline(edge, color=rgb(MARK), linewidth=1, alpha=0.8)
     axes.fill_between(profile.across, profile.exact, color=rgb(EXACT), alpha=0.16, linewidth=0)

@@ -8,15 +8,16 @@ from fakesss.tuner.state import Tuner
 
 EVERY_S = 0.3  # a look at some sixty files takes less than a millisecond
 
+SUFFIXES = (".vert", ".frag", ".glsl")
 NAMED = 3  # so many files, and no more, by name
 
 Stamp = tuple[int, int]  # time of change, ns, and size
 
 
 def stamps(folder: Path) -> dict[str, Stamp]:
-    """Every file of the folder; one that vanishes meanwhile is left out, and so is a whole folder."""
+    """Every shader of the folder; one that vanishes meanwhile is left out, and so is a whole folder."""
     found = {}
-    for path in folder.glob("*"):
+    for path in (path for path in folder.glob("*") if path.suffix in SUFFIXES):  # editors leave other files there
         with contextlib.suppress(OSError):
             status = path.stat()
             found[path.name] = status.st_mtime_ns, status.st_size

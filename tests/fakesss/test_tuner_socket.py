@@ -190,6 +190,7 @@ NO_WISHES: list[tuple[str | bytes, str]] = [
     ('{"number": -1}', "number: -1: must be >= 0"),
     ('{"number": 1.5}', "number"),
     ('{"settings": {}}', "number: is missing"),
+    ('{"number": 1, "int": 2}', "int: unknown key"),  # also pydantic's name of a type
 ]
 
 
