@@ -6,6 +6,7 @@ import click
 
 from fakesss.cli import AS_JSON, commands, done, say
 from fakesss.cli_picture import scene_named
+from fakesss.listening import is_loopback, reached_by
 
 
 @commands.command()
@@ -30,7 +31,7 @@ def tune(scene: str, host: str, port: int, changes: tuple[str, ...], size: str |
 
     def announce(url: str) -> None:
         done({"url": url, "scene_sha256": described.sha256()}, as_json, url)
-        if hint := ssh_hint(url):
+        for hint in filter(None, (ssh_hint(url), network_hint(host, url))):
             say(hint)
         say("Open this address in a browser. Ctrl-C stops the tuner.")
 
@@ -44,3 +45,12 @@ def ssh_hint(url: str) -> str:
         return ""
     port = url.rpartition(":")[2].partition("/")[0]
     return f"You are here by SSH: on your own machine run  ssh -L {port}:127.0.0.1:{port} {connection[2]}"
+
+
+def network_hint(host: str, url: str) -> str:
+    """Who can reach it, if `host` is more than this machine."""
+    if is_loopback(host):
+        return ""
+    there = " or ".join(reached_by(host, url))
+    means = "whoever has the address can use this machine's processor and write scenes and studies here"
+    return f"Other machines reach it at {there}, unencrypted: {means}."

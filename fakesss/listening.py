@@ -1,10 +1,14 @@
-"""A bound socket for a server of ours, and the address under which it is reached."""
+"""A bound socket for a server of ours, and the addresses under which it is reached."""
 
 import contextlib
+import ipaddress
 import socket
 from collections.abc import Iterator
 
 from fakesss.problem import BadInput
+
+SOMEWHERE = {socket.AF_INET: "192.0.2.1", socket.AF_INET6: "2001:db8::1"}
+"""Addresses of nobody (RFC 5737, RFC 3849): which of ours would send to them says by which others reach us."""
 
 
 @contextlib.contextmanager
@@ -28,3 +32,31 @@ def address_of(listener: socket.socket) -> str:
     host, port = listener.getsockname()[:2]
     host = {"0.0.0.0": "127.0.0.1", "::": "[::1]"}.get(host, f"[{host}]" if ":" in host else host)
     return f"http://{host}:{port}"
+
+
+def is_loopback(host: str) -> bool:
+    """Whether only this machine can connect."""
+    try:
+        return ipaddress.ip_address(host).is_loopback
+    except ValueError:
+        return host == "localhost"
+
+
+def reached_by(host: str, url: str) -> list[str]:
+    """Where others on the network find a server that listens on `host`, and on this machine is at `url`."""
+    families = {"0.0.0.0": [socket.AF_INET], "::": [socket.AF_INET, socket.AF_INET6]}.get(host, [])
+    behind = url.rpartition(":")[2]  # port and path
+    found = [address for family in families for address in own_addresses(family)]
+    return [f"http://{f'[{address}]' if ':' in address else address}:{behind}" for address in found] or [url]
+
+
+def own_addresses(family: socket.AddressFamily) -> list[str]:
+    """This machine's on its networks: the one that leads outside first, then those that its own name has."""
+    found = []
+    with contextlib.suppress(OSError), socket.socket(family, socket.SOCK_DGRAM) as probe:  # no such network
+        probe.connect((SOMEWHERE[family], 9))  # of a datagram's socket: nothing is sent
+        found.append(probe.getsockname()[0])
+    with contextlib.suppress(OSError):  # a name that nobody knows
+        found += [str(known[4][0]) for known in socket.getaddrinfo(socket.gethostname(), None, family)]
+    public = [address for address in dict.fromkeys(found) if "%" not in address]
+    return [address for address in public if not ipaddress.ip_address(address).is_loopback]

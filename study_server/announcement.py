@@ -1,21 +1,16 @@
 """What `serve` says at its start: where everything is, and whom and what it trusts."""
 
-import contextlib
-import ipaddress
 import os
-import socket
 from collections.abc import Sequence
 from datetime import date
 
 from sqlalchemy import text
 
+from fakesss.listening import is_loopback, reached_by
 from study_server.app import SECRET_VARIABLE
 from study_server.site import Site
 from study_server.storage.database import Database
 from study_server.storage.engines import shown_url
-
-SOMEWHERE = {socket.AF_INET: "192.0.2.1", socket.AF_INET6: "2001:db8::1"}
-"""Addresses of nobody (RFC 5737, RFC 3849): which of ours would send to them says by which others reach us."""
 
 
 def announcement(site: Site, url: str, host: str, proxies: Sequence[str], workers: int) -> str:
@@ -44,34 +39,6 @@ def overdue(retention_until: date | None) -> list[str]:
     if retention_until is None or retention_until >= date.today():
         return []
     return [f"Warning: retention_until = {retention_until} is past: until then answers were to be kept."]
-
-
-def is_loopback(host: str) -> bool:
-    """Whether only this machine can connect."""
-    try:
-        return ipaddress.ip_address(host).is_loopback
-    except ValueError:
-        return host == "localhost"
-
-
-def reached_by(host: str, url: str) -> list[str]:
-    """Where others on the network find a server that listens on `host`, and on this machine is at `url`."""
-    families = {"0.0.0.0": [socket.AF_INET], "::": [socket.AF_INET, socket.AF_INET6]}.get(host, [])
-    port = url.rpartition(":")[2]
-    found = [address for family in families for address in own_addresses(family)]
-    return [f"http://{f'[{address}]' if ':' in address else address}:{port}" for address in found] or [url]
-
-
-def own_addresses(family: socket.AddressFamily) -> list[str]:
-    """This machine's on its networks: the one that leads outside first, then those that its own name has."""
-    found = []
-    with contextlib.suppress(OSError), socket.socket(family, socket.SOCK_DGRAM) as probe:  # no such network
-        probe.connect((SOMEWHERE[family], 9))  # of a datagram's socket: nothing is sent
-        found.append(probe.getsockname()[0])
-    with contextlib.suppress(OSError):  # a name that nobody knows
-        found += [str(known[4][0]) for known in socket.getaddrinfo(socket.gethostname(), None, family)]
-    public = [address for address in dict.fromkeys(found) if "%" not in address]
-    return [address for address in public if not ipaddress.ip_address(address).is_loopback]
 
 
 def believed(proxies: Sequence[str]) -> str:

@@ -10,9 +10,8 @@ import pytest
 from study_fixture import write_study
 from survey_client import JSON, Participant
 
-from fakesss.listening import listening
+from fakesss.listening import listening, own_addresses
 from fakesss.problem import BadInput
-from study_server.announcement import own_addresses
 from study_server.app import admin_secret, create_app
 from study_server.serve import announce, serve, served
 
