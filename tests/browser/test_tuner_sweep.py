@@ -136,8 +136,8 @@ def test_what_is_seen_is_what_is_built_and_rendered(page: Page, url: str, folder
 
 def test_the_preview_follows_what_does_not_vary_once_it_stands_still(page: Page, talk: Talk) -> None:
     asked: list[bool] = []
-    vary(page, "across", "material.thickness_exponent", "10 20 25 30")
-    buttons = previewed(page, 4)
+    vary(page, "across", "material.thickness_exponent")
+    buttons = previewed(page, 3)
     shown = page.locator("#sweep-grid img").first.get_attribute("src")
     page.on("request", lambda request: asked.append(True) if request.url.endswith("/picture") else None)
     x, y = middle(page)
@@ -145,20 +145,22 @@ def test_the_preview_follows_what_does_not_vary_once_it_stands_still(page: Page,
     page.mouse.down()
     page.mouse.move(x + 20, y, steps=5)
     wait(page, lambda: page.locator("#place").get_attribute("data-moving") == "true")
-    expect(page.locator("#sweep-grid .waits")).to_have_count(4)
+    expect(page.locator("#sweep-grid .waits")).to_have_count(3)
+    factor(page, "across").locator(".count").fill("5")
+    expect(page.locator("#sweep-grid .waits")).to_have_count(5)
     assert asked == []
     page.mouse.up()
     talk.settled(after=1)
-    previewed(page, 4)
-    assert len(asked) == 4
+    previewed(page, 5)
+    assert len(asked) == 5
     assert page.locator("#sweep-grid img").first.get_attribute("src") != shown
     page.locator("#tab-lights").click()
     drag(page, 5, 5)
     talk.settled(after=2)
-    assert len(asked) == 4, "drawn although nobody sees it"
+    assert len(asked) == 5, "drawn although nobody sees it"
     page.locator("#tab-sweep").click()
-    previewed(page, 4)
-    assert len(asked) == 8
+    previewed(page, 5)
+    assert len(asked) == 10
     expect(buttons.nth(2)).to_contain_text("25 now")
 
 
