@@ -98,6 +98,9 @@ def test_holding_b_shows_the_setting_before(page: Page, talk: Talk) -> None:
     shows(page, second)
     expect(page.locator("#previous")).to_have_attribute("aria-pressed", "false")
     assert (len(talk.of("wish")), talk.changes) == (asked, LEFT)  # nothing was changed by looking
+    page.locator("#letter-keys").uncheck()
+    page.keyboard.down("b")
+    expect(page.locator("#previous")).to_have_attribute("aria-pressed", "false")
 
 
 def test_the_setting_before_by_a_click_and_until_something_changes(page: Page, talk: Talk) -> None:

@@ -1,9 +1,11 @@
 """The tuner's stage: what hands, fingers, keys and the clock do to the picture, and what stands on the canvas."""
 
+import io
 import itertools
 import json
 import secrets
-from collections.abc import Iterator
+import struct
+from collections.abc import Callable, Iterator
 from pathlib import Path
 from typing import Any
 
@@ -79,19 +81,49 @@ def test_a_drag_turns_the_object_and_is_one_step_of_undo(page: Page, url: str) -
     expect(page.locator("#undo")).to_be_disabled()
 
 
-def test_a_moving_picture_stands_in_the_place_of_the_still_one(page: Page, url: str) -> None:
+def test_a_moving_picture_of_fewer_pixels_stands_in_the_place_of_the_still_one(page: Page, url: str) -> None:
+    coarse = io.BytesIO()
+    Image.new("RGB", (SIZE // 4, SIZE // 4), (10, 20, 30)).save(coarse, "PNG")
+
+    def coarser(header: dict[str, Any], image: bytes) -> bytes:
+        return coarse.getvalue() if header["moving"] else image
+
+    rewrite(page, lambda header: {**header, "type": "image/png"} if header["moving"] else header, coarser)
     talk = opened(page, url)
-    place = page.locator("#picture").bounding_box()
+    still, place = on_canvas(page), page.locator("#picture").bounding_box()
     x, y = middle(page)
     page.mouse.move(x, y)
     page.mouse.down()
     page.mouse.move(x + 9, y, steps=3)
     wait(page, lambda: page.locator("#place").get_attribute("data-moving") == "true")
     assert page.locator("#picture").bounding_box() == place
-    assert on_canvas(page).shape == (SIZE, SIZE, 4)
-    assert on_canvas(page)[..., :3].max() > 100
+    moving = on_canvas(page)
+    assert moving.shape == still.shape
+    assert np.all(moving == (10, 20, 30, 255))
     page.mouse.up()
     assert not talk.settled()["moving"]
+    assert on_canvas(page)[..., :3].max() > 100
+
+
+def rewrite(
+    page: Page, header: Callable[[dict[str, Any]], dict[str, Any]], image: Callable[[dict[str, Any], bytes], bytes]
+) -> None:
+    """Frames come to the page with another header and image."""
+
+    def between(route: WebSocketRoute) -> None:
+        server = route.connect_to_server()
+
+        def passed_on(message: str | bytes) -> None:
+            if isinstance(message, bytes):
+                (length,) = struct.unpack_from("<I", message)
+                told = json.loads(message[4 : 4 + length])
+                text = json.dumps(header(told)).encode()
+                message = struct.pack("<I", len(text)) + text + image(told, message[4 + length :])
+            route.send(message)
+
+        server.on_message(passed_on)
+
+    page.route_web_socket("**/socket", between)
 
 
 @pytest.mark.parametrize(
@@ -434,16 +466,7 @@ def test_the_status_tells_what_it_costs(page: Page, url: str) -> None:
 
 
 def test_a_damaged_picture_is_said_and_the_next_one_comes(page: Page, url: str) -> None:
-    def between(route: WebSocketRoute) -> None:
-        server = route.connect_to_server()
-
-        def damaged(message: str | bytes) -> None:
-            is_moving = isinstance(message, bytes) and b'"moving": true' in message[:20_000]
-            route.send(message[:-200] if is_moving and b"\xff\xd8" in message else message)
-
-        server.on_message(damaged)
-
-    page.route_web_socket("**/socket", between)
+    rewrite(page, lambda header: header, lambda header, image: image[:-200] if header["moving"] else image)
     talk = opened(page, url)
     drag(page, 20, 0)
     talk.settled(after=1)

@@ -3,6 +3,7 @@
 import { isTyping } from "./history.js";
 
 const HELD_MS = 350; // from here on a press is a hold
+const letters = document.getElementById("letter-keys"); // who speaks to a computer switches such keys off (WCAG 2.1.4)
 
 // `found()` gives {settings, view, caption} or null; `key` is a letter or digit.
 export class Peek {
@@ -23,7 +24,8 @@ export class Peek {
 
   #listen(key, until) {
     const isMine = (event) => event.key.toLowerCase() === key && !isTyping(event);
-    const isBegun = (event) => !event.repeat && !event.ctrlKey && !event.metaKey && !event.altKey && isMine(event);
+    const isPlain = (event) => !event.repeat && !event.ctrlKey && !event.metaKey && !event.altKey;
+    const isBegun = (event) => letters.checked && isPlain(event) && isMine(event);
     addEventListener("keydown", (event) => isBegun(event) && this.#begin(), until);
     addEventListener("keyup", (event) => isMine(event) && this.#end(), until);
     addEventListener("blur", () => this.#end(), until);
