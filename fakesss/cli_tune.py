@@ -1,6 +1,7 @@
 """The command that changes a scene while one looks at it: tune."""
 
 import os
+import sys
 
 import click
 
@@ -31,6 +32,7 @@ def tune(scene: str, host: str, port: int, changes: tuple[str, ...], size: str |
 
     def announce(url: str) -> None:
         done({"url": url, "scene_sha256": described.sha256()}, as_json, url)
+        sys.stdout.flush()  # a pipe would keep it until the end
         for hint in filter(None, (ssh_hint(url), network_hint(host, url))):
             say(hint)
         say("Open this address in a browser. Ctrl-C stops the tuner.")

@@ -1,5 +1,6 @@
 """What all of a tuner's endpoints work with."""
 
+import asyncio
 import contextlib
 from collections.abc import Awaitable, Callable
 from dataclasses import dataclass, field
@@ -25,6 +26,7 @@ from fakesss.tuner.wishes import Settings
 if TYPE_CHECKING:
     from fakesss.tuner.viewer import Viewer
 
+LOOK_S = 0.5  # how often it is looked whether who waits for a picture is still there
 WriteStudy = Callable[..., Any]
 Result = TypeVar("Result")
 
@@ -104,7 +106,12 @@ class Tuner:
                     return await self.studio.do(work)
                 except Unprepared as lack:
                     missing = lack
-            await self.prepare(missing)
+            making = asyncio.create_task(self.prepare(missing))
+            while not (await asyncio.wait({making}, timeout=LOOK_S))[0]:
+                if not await is_wanted():
+                    making.cancel()
+                    raise Gone
+            await making
 
     def close(self) -> bool:
         """Stop; whether everything has come to its end."""

@@ -64,7 +64,7 @@ class Viewer:
     def tell(self, kind: str, **facts: Any) -> None:
         """Send a message that is no frame, without waiting for a slow connection."""
         if self.socket.client_state is WebSocketState.CONNECTED:
-            self._tasks.create_task(self.socket.send_text(json.dumps({"type": kind, **facts})))
+            self._tasks.create_task(self._send(json.dumps({"type": kind, **facts})))
 
     def say(self, level: Level, text: str, number: int | None = None) -> None:
         """A sentence for the page's messages; with the `number` of a wish, that one gets no frame."""
@@ -98,9 +98,11 @@ class Viewer:
                 what = in_words(found.missing.kind, self.tuner.scene(wish.settings))
                 self.say("info", f"{what} is being made; the picture follows.", wish.number)
             else:
-                await self.socket.send_bytes(found.drawn.message(wish.number, wait, found.stand_in))
+                await self._send(found.drawn.message(wish.number, wait, found.stand_in))
             if found.missing and not (wish.moving and found.drawn):
                 self._make(found.missing, self.tuner.scene(wish.settings))
+            elif not wish.moving:
+                self._give_up()
 
     async def _attempt(self, wish: Wish) -> Attempt | None:
         """What the studio makes of a wish; None where the answer is a sentence, which was said."""
@@ -122,13 +124,23 @@ class Viewer:
             self.last = scene
         return found
 
-    def _make(self, missing: Unprepared, scene: Scene) -> None:
-        """Begin what a picture lacked, instead of what an earlier one did."""
+    async def _send(self, message: str | bytes) -> None:
+        try:
+            await (self.socket.send_text(message) if isinstance(message, str) else self.socket.send_bytes(message))
+        except RuntimeError as error:  # the connection was closed at our end meanwhile
+            raise WebSocketDisconnect from error
+
+    def _give_up(self) -> None:
+        """Stop what is made for an earlier picture."""
         if self._making and not self._making.task.done():
-            if self._making.missing.key == missing.key:
-                return
             self._making.task.cancel()
             self.tell("working", what=self._making.what, done=True)
+
+    def _make(self, missing: Unprepared, scene: Scene) -> None:
+        """Begin what a picture lacked, instead of what an earlier one did."""
+        if self._making and not self._making.task.done() and self._making.missing.key == missing.key:
+            return
+        self._give_up()
         what = in_words(missing.kind, scene)
         self.tell("working", what=what, done=False)
         self._making = Making(missing, what, self._tasks.create_task(self._prepare(missing, what, scene.object)))

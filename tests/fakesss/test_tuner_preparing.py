@@ -1,10 +1,12 @@
 """What takes long is made beside the drawing: something stands in, and what nobody waits for is given up."""
 
+import contextlib
 import threading
 from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
+import httpx
 import pytest
 from tuner_server import Frame, Tab, tab, tuned
 from waiting import until
@@ -15,6 +17,7 @@ from fakesss.problem import BadInput
 from fakesss.renderer import render_file
 from fakesss.scene import Scene
 from fakesss.shapes import load_object
+from fakesss.tuner import state
 from fakesss.tuner.preparing import stand_ins
 
 BASE = Scene(object="sphere:1000", size=(32, 32), occlusion={"rays": 16})  # type: ignore[arg-type]
@@ -123,6 +126,37 @@ def test_what_nobody_waits_for_is_given_up(url: str, held: Bake) -> None:
             until(lambda rays=rays: held.asked[-1] == rays)  # type: ignore[misc]
         assert held.given_up == [24]
     until(lambda: held.given_up == [24, 32])
+
+
+@pytest.mark.gl
+def test_what_was_taken_back_is_given_up(url: str, held: Bake) -> None:
+    """A drag does not; the next picture that can be drawn does."""
+    held.go.set()
+    with tab(url) as viewer:
+        viewer.finished()
+        held.go.clear()
+        stand_in(viewer, {"occlusion.rays": 24})
+        until(lambda: held.asked[-1] == 24)
+        stand_in(viewer, {}, moving=True)
+        assert held.given_up == []
+        assert stand_in(viewer, {}).header["stand_in"] == ""
+        until(lambda: held.given_up == [24])
+        viewer.message(type="working", done=True, what="Occlusion with 24 rays a vertex")
+
+
+@pytest.mark.gl
+def test_a_picture_that_nobody_fetches_any_more(url: str, held: Bake, monkeypatch: pytest.MonkeyPatch) -> None:
+    """The browser leaves the page of a grid whose pictures are being prepared."""
+    monkeypatch.setattr(state, "LOOK_S", 0.01)
+    held.go.set()
+    with tab(url) as viewer:
+        viewer.finished()
+        held.go.clear()
+        with contextlib.suppress(httpx.TimeoutException):
+            settings = {"changes": {"occlusion.rays": 24}}
+            httpx.post(url + "picture", json={"settings": settings}, timeout=httpx.Timeout(60, read=0.2))
+        until(lambda: held.given_up == [24])
+        assert stand_in(viewer, {}).header["stand_in"] == ""
 
 
 @pytest.mark.gl
