@@ -14,9 +14,11 @@ class Control {
     Object.assign(this, { element, settings, data: element.dataset });
     this.unit = element.querySelector(".unit")?.textContent ?? "";
     this.needs = JSON.parse(this.data.needs ?? "[]");
-    this.problem = element.querySelector(".problem");
+    this.inputs = [...element.querySelectorAll("input, select")];
+    this.section = element.closest("[role=tabpanel]");
+    for (const part of ["problem", "reset", "given", "otherwise"]) this[`${part}Part`] = element.querySelector(`.${part}`);
     this.build();
-    element.querySelector(".reset").addEventListener("click", () => this.reset());
+    this.resetPart.addEventListener("click", () => this.reset());
     for (const target of element.querySelectorAll(".label, input[type=range]")) {
       target.addEventListener("dblclick", () => this.reset());
     }
@@ -45,8 +47,7 @@ class Control {
     this.forget();
     if (this.isAdded) this.settings.set(this.path, JSON.parse(this.data.default));
     else this.settings.reset(this.path);
-    const reset = this.element.querySelector(".reset");
-    if (document.activeElement === reset) this.inputs[0].focus(); // it is about to vanish
+    if (document.activeElement === this.resetPart) this.inputs[0].focus(); // it is about to vanish
   }
 
   forget() {
@@ -54,16 +55,14 @@ class Control {
     for (const field of this.fields ?? []) field.forget();
   }
 
-  get inputs() {
-    return [...this.element.querySelectorAll("input, select")].filter((input) => !input.closest(".auto"));
-  }
-
   tell(problem) {
-    this.problem.textContent = problem;
-    this.problem.hidden = !problem;
+    this.problemPart.textContent = problem;
+    this.problemPart.hidden = !problem;
   }
 
+  // Nothing is done for what nobody sees: a drag has no time for it.
   show(faces) {
+    if (this.section.hidden) return;
     const value = this.value;
     const isEmpty = value === null && this.auto;
     this.write(isEmpty ? fitted(this.path, (path) => this.settings.value(path), faces) : value);
@@ -88,23 +87,27 @@ class Control {
   mark() {
     const isChanged = this.isAdded ? !isSame(this.value, JSON.parse(this.data.default)) : this.settings.isChanged(this.path);
     this.element.classList.toggle("changed", isChanged);
-    this.element.querySelector(".reset").hidden = !isChanged;
-    this.element.querySelector(".given").textContent = this.settings.filledBy(this.path) ?? "";
+    this.resetPart.hidden = !isChanged;
+    this.givenPart.textContent = this.settings.filledBy(this.path);
   }
 
   disable(why) {
-    this.element.querySelector(".otherwise").textContent = why;
+    this.otherwisePart.textContent = why;
     this.element.classList.toggle("idle", Boolean(why));
     if (why) this.forget();
-    for (const input of this.element.querySelectorAll("input, select")) input.disabled = Boolean(why);
+    for (const input of this.inputs) input.disabled = Boolean(why);
   }
 }
 
 class NumberControl extends Control {
   build() {
-    const hands = { change: (value, isGesture) => this.set(value, isGesture), settle: () => this.settings.settle() };
-    const field = new NumberField(this.element, new Scale(this.data), { ...hands, tell: (problem) => this.tell(problem) });
-    this.fields = [field];
+    const hands = {
+      change: (value, isGesture) => this.set(value, isGesture),
+      settle: () => this.settings.settle(),
+      tell: (problem) => this.tell(problem),
+      empty: this.data.empty === undefined ? null : () => this.set(null),
+    };
+    this.fields = [new NumberField(this.element, new Scale(this.data), hands)];
     this.auto = this.element.querySelector(".auto input");
     this.auto?.addEventListener("change", () => this.set(this.auto.checked ? null : this.shown));
   }

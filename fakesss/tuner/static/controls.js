@@ -22,6 +22,7 @@ export function start({ settings, connection, start: facts }) {
 
   settings.addEventListener("change", showSoon);
   picked.addEventListener("pick", showSoon);
+  document.getElementById("panel").addEventListener("chosen", show);
   connection.addEventListener("frame", ({ detail: { header } }) => {
     if (header.faces !== faces) showSoon();
     ({ faces } = header);

@@ -9,7 +9,7 @@ export function start() {
   const panel = document.getElementById("panel");
   let pointed = null;
 
-  const tipOf = (element) => element?.closest?.("#panel .control, #panel [data-tip]")?.querySelector(".tip")?.textContent;
+  const tipOf = (element) => element?.closest?.("#panel .control")?.querySelector(".tip")?.textContent;
   const show = () => {
     const tip = tipOf(pointed) ?? tipOf(document.activeElement);
     hint.textContent = tip ?? GENERAL;

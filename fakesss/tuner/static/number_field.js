@@ -10,7 +10,7 @@ export class NumberField {
   #isStepping = false; // a key is held
   #isTyping = false; // the text is not what `show` put there
 
-  // `hands`: change(value, isGesture), settle(), tell(problem) for what was typed wrong.
+  // `hands`: change(value, isGesture), settle(), tell(problem) for what was typed wrong; empty() if it may be left empty.
   constructor(element, scale, hands) {
     this.slider = element.querySelector("input[type=range]");
     this.typed = element.querySelector("input.typed");
@@ -76,6 +76,11 @@ export class NumberField {
 
   #read() {
     if (!this.#isTyping) return;
+    if (this.hands.empty && !this.typed.value.trim()) {
+      this.forget();
+      this.hands.empty();
+      return;
+    }
     const { value, problem } = this.scale.read(this.typed.value);
     this.#say(problem);
     if (problem) return;

@@ -1,4 +1,5 @@
-// The panel's tabs, by the keys of the ARIA Authoring Practices: arrows, Home and End.
+// The panel's tabs, by the keys of the ARIA Authoring Practices: arrows, Home and End. A section that is chosen gets a
+// "chosen" event.
 
 export function start() {
   const tabs = [...document.querySelectorAll("#panel [role=tab]")];
@@ -10,6 +11,7 @@ export function start() {
       each.tabIndex = isChosen ? 0 : -1;
       document.getElementById(each.getAttribute("aria-controls")).hidden = !isChosen;
     }
+    document.getElementById(tab.getAttribute("aria-controls")).dispatchEvent(new Event("chosen", { bubbles: true }));
   }
 
   for (const [index, tab] of tabs.entries()) {
