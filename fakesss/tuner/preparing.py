@@ -86,8 +86,10 @@ class Preparing:
         self._waiting[key] += 1
         if key not in self._under_way:
             self._under_way[key] = self._thread.submit(self._make, missing)
+        made = asyncio.wrap_future(self._under_way[key])
+        made.add_done_callback(forgotten)
         try:
-            return await asyncio.shield(asyncio.wrap_future(self._under_way[key]))
+            return await asyncio.shield(made)
         finally:
             self._waiting[key] -= 1
             if not self._waiting[key]:
@@ -106,3 +108,9 @@ class Preparing:
         last = self._thread.submit(int)
         self._thread.shutdown(wait=False)
         return not wait([last], LEAVE_S).not_done
+
+
+def forgotten(made: "asyncio.Future[Any]") -> None:
+    """Ask what became of it, though nobody may wait for it any more: asyncio would complain on the terminal."""
+    if not made.cancelled():
+        made.exception()
