@@ -16,7 +16,7 @@ from tuner_server import tuned
 from fakesss.cli_study import build_study
 from fakesss.renderer import render_file
 from fakesss.scene import Scene
-from fakesss.tuner.keep import PLAIN, RESERVED
+from fakesss.tuner.keep import PLAIN, RESERVED, quoted
 from stimuli.sweep import write_sweep
 
 BASE = Scene(object="sphere:1000", size=(64, 48))
@@ -95,6 +95,13 @@ def test_names_that_lead_elsewhere_or_are_no_files_are_refused(client: httpx.Cli
 @pytest.mark.parametrize("name", ["a", "scene.toml", "Übergang 3", "light-2.final", "console", "x" * 100, "2011"])
 def test_plain_names_are_accepted(name: str) -> None:
     assert PLAIN.fullmatch(name) and not RESERVED.fullmatch(name)
+
+
+def test_a_command_names_what_lies_here_from_here(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.chdir(tmp_path)
+    assert quoted(tmp_path / "a b" / "scene.toml") == "'a b/scene.toml'"
+    assert quoted(Path("scene.toml")) == "scene.toml"
+    assert quoted(tmp_path.parent / "scene.toml") == str(tmp_path.parent / "scene.toml")
 
 
 def test_a_scene_is_not_called_as_a_study_is(client: httpx.Client) -> None:
