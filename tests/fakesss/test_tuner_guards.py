@@ -17,6 +17,13 @@ BASE = Scene(object="sphere:1000", size=(32, 32))
 
 
 @pytest.fixture(scope="module")
+def http() -> Iterator[httpx.Client]:
+    """One for all: each takes long to make."""
+    with httpx.Client() as client:
+        yield client
+
+
+@pytest.fixture(scope="module")
 def url(tmp_path_factory: pytest.TempPathFactory) -> Iterator[str]:
     with tuned(BASE, tmp_path_factory.mktemp("tuner")) as address:
         yield address
@@ -32,20 +39,20 @@ PATHS = ("", "start.json", "static/settings.js")
 
 @pytest.mark.gl
 @pytest.mark.parametrize("path", PATHS)
-def test_without_the_secret_there_is_nothing(url: str, path: str) -> None:
+def test_without_the_secret_there_is_nothing(http: httpx.Client, url: str, path: str) -> None:
     root, token = url[:-1].rsplit("/", 1)
     assert len(token) >= 22  # 128 bits
     for guess in ("", "x", token[:-1], token + "x", token.swapcase(), "ü" * 22, "%00", "..", "static"):
-        answer = httpx.get(f"{root}/{guess}/{path}")
+        answer = http.get(f"{root}/{guess}/{path}")
         assert answer.status_code == 404 and token not in answer.text
-    assert httpx.get(root).status_code == 404
-    assert httpx.get(url + path).status_code == 200
+    assert http.get(root).status_code == 404
+    assert http.get(url + path).status_code == 200
 
 
 @pytest.mark.gl
-def test_without_a_slash_one_is_led_to_it(url: str) -> None:
+def test_without_a_slash_one_is_led_to_it(http: httpx.Client, url: str) -> None:
     """Addresses in the page are relative to it."""
-    answer = httpx.get(url.removesuffix("/"))
+    answer = http.get(url.removesuffix("/"))
     assert answer.status_code == 307 and httpx.URL(url).join(answer.headers["location"]) == httpx.URL(url)
 
 
@@ -54,10 +61,10 @@ def test_without_a_slash_one_is_led_to_it(url: str) -> None:
     "host",
     ["evil.example", "evil.example:{port}", "127.0.0.1.evil.example", "localhost.evil.example:{port}", "", "a b"],
 )
-def test_a_name_that_was_pointed_here_is_refused(url: str, host: str) -> None:
+def test_a_name_that_was_pointed_here_is_refused(http: httpx.Client, url: str, host: str) -> None:
     """DNS rebinding: a page at evil.example has its name resolve to 127.0.0.1, and is of our origin then."""
     headers = {"Host": host.format(port=urlsplit(url).port)}
-    answer = httpx.get(url, headers=headers)
+    answer = http.get(url, headers=headers)
     assert answer.status_code == 421 and "--host" in answer.json()["error"]
     with pytest.raises(InvalidStatus) as refused, tab(url, additional_headers=headers):
         pass
@@ -77,37 +84,37 @@ def test_two_hosts_are_none(url: str) -> None:
 
 @pytest.mark.gl
 @pytest.mark.parametrize("name", ["localhost", "127.0.0.1", "[::1]", "LOCALHOST"])
-def test_names_of_this_machine_at_any_port(url: str, name: str) -> None:
+def test_names_of_this_machine_at_any_port(http: httpx.Client, url: str, name: str) -> None:
     """An SSH tunnel may end at another port."""
     for host in (name, f"{name}:9999"):
-        assert httpx.get(url, headers={"Host": host}).status_code == 200
+        assert http.get(url, headers={"Host": host}).status_code == 200
 
 
 @pytest.mark.gl
 @pytest.mark.parametrize(
     "origin", ["http://evil.example", "null", "http://[", "https://localhost:1", "http://127.0.0.1"]
 )
-def test_another_sites_page_can_neither_post_nor_listen(url: str, origin: str) -> None:
+def test_another_sites_page_can_neither_post_nor_listen(http: httpx.Client, url: str, origin: str) -> None:
     for path in ("picture", "save", "study", "medium", "object?name=x.ply"):
-        assert httpx.post(url + path, json={}, headers={"Origin": origin}).status_code == 403
-    assert httpx.delete(url, headers={"Origin": origin}).status_code == 403
+        assert http.post(url + path, json={}, headers={"Origin": origin}).status_code == 403
+    assert http.delete(url, headers={"Origin": origin}).status_code == 403
     with pytest.raises(InvalidStatus) as refused, tab(url, origin=origin):
         pass
     assert refused.value.response.status_code == 403
 
 
 @pytest.mark.gl
-def test_our_own_page_can(url: str) -> None:
+def test_our_own_page_can(http: httpx.Client, url: str) -> None:
     origin = f"http://{place(url)}"
-    assert httpx.post(url + "picture", json={}, headers={"Origin": origin}).status_code == 200
+    assert http.post(url + "picture", json={}, headers={"Origin": origin}).status_code == 200
     with tab(url, origin=origin) as viewer:
         viewer.finished()
 
 
 @pytest.mark.gl
 @pytest.mark.parametrize("path", [*PATHS, "nothing"])
-def test_what_every_answer_carries(url: str, path: str) -> None:
-    headers = httpx.get(url + path).headers
+def test_what_every_answer_carries(http: httpx.Client, url: str, path: str) -> None:
+    headers = http.get(url + path).headers
     policy = headers["content-security-policy"]
     assert "default-src 'none'" in policy and "script-src 'self';" in policy and "style-src 'self';" in policy
     assert f"connect-src 'self' ws://{place(url)};" in policy and "frame-ancestors 'none'" in policy

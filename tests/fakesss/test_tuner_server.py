@@ -38,6 +38,13 @@ def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 
 @pytest.fixture(scope="module")
+def http() -> Iterator[httpx.Client]:
+    """One for all: each takes long to make."""
+    with httpx.Client() as client:
+        yield client
+
+
+@pytest.fixture(scope="module")
 def url(folder: Path) -> Iterator[str]:
     before = os.environ.get("FAKESSS_CACHE")
     os.environ["FAKESSS_CACHE"] = str(folder / "cache")
@@ -60,12 +67,12 @@ def ply(solid: trimesh.Trimesh) -> bytes:
     return content
 
 
-def test_the_page_and_what_it_starts_from(url: str, folder: Path) -> None:
-    page = httpx.get(url)
+def test_the_page_and_what_it_starts_from(http: httpx.Client, url: str, folder: Path) -> None:
+    page = http.get(url)
     assert page.headers["content-type"].startswith("text/html") and "<main" in page.text
     for path in ("static/settings.js", "static/connection.js"):
-        assert "javascript" in httpx.get(url + path).headers["content-type"]
-    start = httpx.get(url + "start.json").json()
+        assert "javascript" in http.get(url + path).headers["content-type"]
+    start = http.get(url + "start.json").json()
     assert Scene.from_dict(start["base"], "start") == BASE
     assert start["views"] == dict(LOOKS) and next(iter(start["views"])) == "picture"
     assert start["folder"] == str(folder) and start["media"].keys() == MEDIA.keys()
@@ -81,31 +88,33 @@ def test_the_page_and_what_it_starts_from(url: str, folder: Path) -> None:
         {"quality": "survey"},
     ],
 )
-def test_what_is_seen_is_what_is_rendered(url: str, tmp_path: Path, changes: dict[str, Any]) -> None:
+def test_what_is_seen_is_what_is_rendered(
+    http: httpx.Client, url: str, tmp_path: Path, changes: dict[str, Any]
+) -> None:
     """A still frame, the picture of a grid and the file of `fakesss render` of the saved scene have the same bytes."""
     with tab(url) as viewer:
         frame = viewer.finished(changes)
-    saved = httpx.post(url + "save", json={"settings": {"changes": changes}, "file": tmp_path.name}).json()["scene"]
+    saved = http.post(url + "save", json={"settings": {"changes": changes}, "file": tmp_path.name}).json()["scene"]
     render_file(Scene.load(saved), tmp_path / "picture.png", timed=False)
     expected = (tmp_path / "picture.png").read_bytes()
     assert frame.image == expected and frame.header["scene_sha256"] == Scene.load(saved).sha256()
-    assert httpx.post(url + "picture", json={"settings": {"changes": changes}}).content == expected
+    assert http.post(url + "picture", json={"settings": {"changes": changes}}).content == expected
 
 
-def test_an_effect_forced_on_in_vain_changes_no_byte(url: str) -> None:
+def test_an_effect_forced_on_in_vain_changes_no_byte(http: httpx.Client, url: str) -> None:
     settings = {"changes": {"material.backlight": 0.0}}
     plain, forced = (
-        httpx.post(url + "picture", json={"settings": {**settings, "effects": effects}}).content
+        http.post(url + "picture", json={"settings": {**settings, "effects": effects}}).content
         for effects in ({}, {"backlight": "on"})
     )
     assert plain == forced
 
 
-def test_a_picture_of_a_grid_is_smaller_and_may_be_a_view(url: str) -> None:
-    answer = httpx.post(url + "picture", json={"size": [32, 24]})
+def test_a_picture_of_a_grid_is_smaller_and_may_be_a_view(http: httpx.Client, url: str) -> None:
+    answer = http.post(url + "picture", json={"size": [32, 24]})
     assert answer.headers["content-type"] == "image/png"
     assert Image.open(io.BytesIO(answer.content)).size == (32, 24)
-    view = httpx.post(url + "picture", json={"size": [32, 24], "view": "thickness"})
+    view = http.post(url + "picture", json={"size": [32, 24], "view": "thickness"})
     assert Image.open(io.BytesIO(view.content)).size == (32, 24) and view.content != answer.content
 
 
@@ -123,29 +132,29 @@ def test_a_picture_of_a_grid_is_smaller_and_may_be_a_view(url: str) -> None:
         ({"setings": {}}, "setings"),
     ],
 )
-def test_what_is_wrong_is_said_in_one_sentence(url: str, body: dict[str, Any], words: str) -> None:
-    said = refusal(httpx.post(url + "picture", json=body))
+def test_what_is_wrong_is_said_in_one_sentence(http: httpx.Client, url: str, body: dict[str, Any], words: str) -> None:
+    said = refusal(http.post(url + "picture", json=body))
     assert words in said and "\n" not in said
 
 
-def test_a_body_that_is_no_json(url: str) -> None:
-    refusal(httpx.post(url + "picture", content=b"{", headers={"Content-Type": "application/json"}))
-    assert httpx.post(url + "picture", json={}).status_code == 200
+def test_a_body_that_is_no_json(http: httpx.Client, url: str) -> None:
+    refusal(http.post(url + "picture", content=b"{", headers={"Content-Type": "application/json"}))
+    assert http.post(url + "picture", json={}).status_code == 200
 
 
-def test_a_measured_medium_as_a_start(url: str) -> None:
-    marble = httpx.post(url + "medium", json={"medium": "marble", "size_mm": 30}).json()["changes"]
-    thick = httpx.post(url + "medium", json={"medium": "marble", "size_mm": 60}).json()["changes"]
+def test_a_measured_medium_as_a_start(http: httpx.Client, url: str) -> None:
+    marble = http.post(url + "medium", json={"medium": "marble", "size_mm": 30}).json()["changes"]
+    thick = http.post(url + "medium", json={"medium": "marble", "size_mm": 60}).json()["changes"]
     assert thick["material.thickness_exponent"] == pytest.approx(2 * marble["material.thickness_exponent"])
-    assert httpx.post(url + "picture", json={"settings": {"changes": marble}}).status_code == 200
-    assert 'did you mean "marble"?' in refusal(httpx.post(url + "medium", json={"medium": "marbel"}))
+    assert http.post(url + "picture", json={"settings": {"changes": marble}}).status_code == 200
+    assert 'did you mean "marble"?' in refusal(http.post(url + "medium", json={"medium": "marbel"}))
 
 
-def test_an_object_is_brought_and_drawn(url: str) -> None:
+def test_an_object_is_brought_and_drawn(http: httpx.Client, url: str) -> None:
     content = ply(trimesh.creation.icosphere(subdivisions=2))
-    found = httpx.post(url + "object", params={"name": "My bunny.PLY"}, content=content).json()
+    found = http.post(url + "object", params={"name": "My bunny.PLY"}, content=content).json()
     assert (found["faces"], found["vertices"]) == (320, 162)
-    again = httpx.post(url + "object", params={"name": "other.ply"}, content=content).json()
+    again = http.post(url + "object", params={"name": "other.ply"}, content=content).json()
     assert again["object"] == found["object"] and Path(found["object"]).read_bytes() == content
     with tab(url) as viewer:
         header = viewer.finished({"object": found["object"]}).header
@@ -162,16 +171,18 @@ def test_an_object_is_brought_and_drawn(url: str) -> None:
         ("../../up.exe", b"", "is no mesh format"),
     ],
 )
-def test_what_is_no_object_is_not_kept(url: str, folder: Path, name: str, content: bytes, words: str) -> None:
+def test_what_is_no_object_is_not_kept(
+    http: httpx.Client, url: str, folder: Path, name: str, content: bytes, words: str
+) -> None:
     before = set((folder / "cache" / "objects").glob("*"))
-    said = refusal(httpx.post(url + "object", params={"name": name}, content=content))
+    said = refusal(http.post(url + "object", params={"name": name}, content=content))
     assert words in said and str(folder) not in said
     assert set((folder / "cache" / "objects").glob("*")) == before
 
 
 @pytest.mark.parametrize("announced", [True, False])
 def test_what_is_too_large_is_refused_and_leaves_nothing(
-    folder: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, announced: bool
+    http: httpx.Client, folder: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, announced: bool
 ) -> None:
     """Also where a body is longer than it said, or did not say how long it is."""
     monkeypatch.setenv("FAKESSS_CACHE", str(tmp_path))
@@ -181,17 +192,17 @@ def test_what_is_too_large_is_refused_and_leaves_nothing(
     large = b"v 0 0 0\n" * (1 << 18)
     with tuned(BASE, folder) as url:
         body = large if announced else iter([large[:1000], large[1000:]])
-        answer = httpx.post(url + "object", params={"name": "large.obj"}, content=body)
+        answer = http.post(url + "object", params={"name": "large.obj"}, content=body)
         refusal(answer, 413)
-        refusal(httpx.post(url + "picture", content=large, headers={"Content-Type": "application/json"}), 413)
+        refusal(http.post(url + "picture", content=large, headers={"Content-Type": "application/json"}), 413)
     assert list((tmp_path / "objects").glob("*")) == []
 
 
-def test_no_such_page(url: str) -> None:
-    assert refusal(httpx.get(url + "nothing"), 404) == "There is no such page."
-    assert refusal(httpx.get(url + "picture"), 405)
-    assert httpx.get(url + "static/../app.py").status_code == 404
-    assert httpx.get(url + "static/%2e%2e/app.py").status_code == 404
+def test_no_such_page(http: httpx.Client, url: str) -> None:
+    assert refusal(http.get(url + "nothing"), 404) == "There is no such page."
+    assert refusal(http.get(url + "picture"), 405)
+    assert http.get(url + "static/../app.py").status_code == 404
+    assert http.get(url + "static/%2e%2e/app.py").status_code == 404
 
 
 COMMAND = [sys.executable, "-m", "fakesss", "tune"]
