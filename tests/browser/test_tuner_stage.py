@@ -465,6 +465,22 @@ def test_the_status_tells_what_it_costs(page: Page, url: str) -> None:
     assert page.locator("#passes tbody tr.culled").count() == sum(not one["kept"] for one in told.values())
 
 
+def test_a_warning_is_said_once_for_as_long_as_it_holds(page: Page, url: str) -> None:
+    clips = iter((["0.1% clip."], ["0.2% clip."], [], ["0.3% clip."]))
+    rewrite(
+        page,
+        lambda header: header if header["moving"] else {**header, "warnings": next(clips)},
+        lambda header, image: image,
+    )
+    talk = opened(page, url)
+    for wishes in range(1, 4):
+        page.locator("#view").select_option("front" if wishes % 2 else "picture")
+        talk.settled(after=wishes)
+    expect(page.locator("#log li")).to_have_count(2)
+    assert "0.1%" in (page.locator("#log li").first.text_content() or "")
+    assert "0.3%" in (page.locator("#log li").last.text_content() or "")
+
+
 def test_a_damaged_picture_is_said_and_the_next_one_comes(page: Page, url: str) -> None:
     rewrite(page, lambda header: header, lambda header, image: image[:-200] if header["moving"] else image)
     talk = opened(page, url)

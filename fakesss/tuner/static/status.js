@@ -110,14 +110,18 @@ function drawer(button, id, opened) {
   });
 }
 
-// What the picture is warned of is said when it begins to be true, not with every picture.
+// What the picture is warned of is said when it begins to be true, not with every picture and its other numbers.
 function warnings(stage, say) {
-  let told = [];
+  let told = new Set();
   stage.addEventListener("still", () => {
     const now = stage.picture().header.warnings;
-    for (const sentence of now) if (!told.includes(sentence)) say("warning", sentence);
-    told = now;
+    for (const sentence of now) if (!told.has(withoutNumbers(sentence))) say("warning", sentence);
+    told = new Set(now.map(withoutNumbers));
   });
+}
+
+function withoutNumbers(sentence) {
+  return sentence.replace(/[\d.]+/g, "");
 }
 
 // Over the picture, for as long as it is not the one that was asked for: the last good one stays.
