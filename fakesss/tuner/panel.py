@@ -90,7 +90,7 @@ MATERIAL = (
             Control("material.thickness", "thickness", symbol="t", equation="3.10"),
             Control(
                 "layers.gap",
-                "gap that counts",
+                "gap width",
                 0.001,
                 1,
                 0.001,

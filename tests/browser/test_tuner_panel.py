@@ -16,7 +16,7 @@ from fakesss.camera import View
 from fakesss.colour import decode_srgb, encode_srgb
 from fakesss.media import MEDIA
 from fakesss.offline.fit_start import starting_scene
-from fakesss.scene import Scene
+from fakesss.scene import Scene, scene_paths
 from fakesss.shadow_maps import atlas
 from fakesss.tuner.page import PANELS
 from fakesss.tuner.panel import GROUPS
@@ -479,7 +479,11 @@ def test_shaders_are_read_again_and_all_values_printed(panel: Panel) -> None:
     page.get_by_role("button", name="Reload shaders").click()
     expect(page.locator("#log")).to_contain_text(re.compile(r"Read again: \d+ shaders"))
     page.get_by_role("button", name="Print all values").click()
-    expect(page.locator("#values")).to_contain_text("backlight = 1.25")
+    printed = page.locator("#values").inner_text().splitlines()
+    assert {line.partition(" = ")[0] for line in printed} == set(scene_paths()) - {"lights"}
+    assert "material.backlight = 1.25" in printed
+    assert "camera.distance = null" in printed
+    expect(page.locator("#values")).to_be_focused()
 
 
 def test_the_hint_says_what_a_screen_reader_says(panel: Panel) -> None:
