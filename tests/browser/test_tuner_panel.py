@@ -242,6 +242,20 @@ def test_fields_left_empty_show_what_the_program_takes(panel: Panel) -> None:
         assert found == pytest.approx([view.distance, view.near, view.far, side, 1234]), changes
 
 
+def test_a_fitted_number_follows_what_it_is_fitted_to(panel: Panel) -> None:
+    panel.tab("lights")
+    expect(panel.typed("shadow.map_size")).to_have_value("256")
+    panel.tab("shader")
+    panel.control("size").locator("input").first.fill("2048")
+    panel.control("size").locator("input").first.press("Enter")
+    panel.tab("lights")
+    expect(panel.typed("shadow.map_size")).to_have_value("4096")
+    panel.control("light.kind").locator("select").select_option("point")
+    panel.type("light.distance", "1")
+    panel.control("light.shadows").locator("input").check()
+    expect(panel.typed("shadow.map_size")).to_have_value("2730")  # six maps, three a row
+
+
 def test_an_empty_field_can_be_set_and_left_empty_again(panel: Panel) -> None:
     panel.tab("camera")
     row = panel.control("camera.distance")
@@ -267,7 +281,15 @@ def test_lights_are_added_picked_tuned_and_removed(panel: Panel) -> None:
     panel.tab("lights")
     add, remove = page.get_by_role("button", name="Add light"), page.get_by_role("button", name="Remove", exact=True)
     expect(remove).to_be_disabled()
+    panel.type("light.elevation", "7")
+    panel.type("light.azimuth", "170")
     add.click()
+    expect(panel.typed("light.elevation")).to_have_value("7")  # a copy of the main light as it is now
+    expect(panel.typed("light.azimuth")).to_have_value("-130")
+    panel.page.get_by_role("radio", name="Main light").check(force=True)
+    for name in ("elevation", "azimuth"):
+        panel.control(f"light.{name}").get_by_role("button", name=f"Reset {name}").click()
+    page.get_by_role("radio", name="Light 2").check(force=True)
     expect(page.get_by_role("radio", name="Light 2")).to_be_checked()
     expect(panel.control("light.cutoff").locator(".otherwise")).to_have_text("only of a spot light")
     expect(panel.slider("light.cutoff")).to_be_hidden()

@@ -14,10 +14,14 @@ export function fitted(path, value, faces) {
     "camera.distance": distance,
     "camera.near": () => Math.max(near(), NEAREST),
     "camera.far": () => Math.max(distance() + 1 + MARGIN, 2 * Math.max(near(), NEAREST)),
-    "shadow.map_size": () => mapSize([value("light"), ...value("lights")], value("size")),
+    "shadow.map_size": () => mapSize([mainLight(value), ...value("lights")], value("size")),
     "layers.faces": () => faces,
   };
   return fits[path]();
+}
+
+function mainLight(value) {
+  return Object.fromEntries(["shadows", "kind", "distance", "cutoff"].map((field) => [field, value(`light.${field}`)]));
 }
 
 function mapSize(lights, size) {

@@ -20,50 +20,73 @@ class Picked extends EventTarget {
 
 export const picked = new Picked();
 
-export function start({ settings, say }) {
-  const chips = document.getElementById("lights");
-  const template = document.getElementById("light-chip");
+export function start({ settings, stage, say }) {
+  const chips = new Chips();
   const add = document.getElementById("add-light");
   const remove = document.getElementById("remove-light");
 
-  function show() {
+  const show = () => {
     const further = settings.value("lights").length;
     if (picked.index > further) picked.pick(further); // it was taken away, by undo too
-    while (chips.children.length > further + 1) chips.lastElementChild.remove();
-    while (chips.children.length < further + 1) chips.append(chip(chips.children.length));
-    chips.children[picked.index].querySelector("input").checked = true;
+    chips.show(further + 1, picked.index);
     add.disabled = further + 1 >= MOST;
     remove.disabled = picked.index === 0;
-  }
+  };
 
-  function chip(index) {
-    const made = template.content.cloneNode(true);
-    const button = made.querySelector("input");
-    button.value = index;
-    button.setAttribute("aria-label", index ? `Light ${index + 1}` : "Main light");
-    button.addEventListener("change", () => picked.pick(index));
-    made.querySelector("span").textContent = index ? index + 1 : "Main";
-    return made;
-  }
-
-  // A copy of the picked light from another side, without its ambient light: that would be counted twice.
   add.addEventListener("click", () => {
     const lights = settings.value("lights");
-    const like = picked.index ? lights[picked.index - 1] : settings.value("light");
-    const azimuth = ((like.azimuth + APART + 180) % 360) - 180;
-    settings.set("lights", [...lights, { ...like, azimuth, ambient: [0, 0, 0] }]);
+    settings.set("lights", [...lights, another(picked.index ? lights[picked.index - 1] : mainLight(settings))]);
     picked.pick(lights.length + 1);
   });
-
   remove.addEventListener("click", () => {
     const { index } = picked;
     picked.pick(index - 1);
     settings.set("lights", settings.value("lights").toSpliced(index - 1, 1));
     say("info", `Light ${index + 1} is removed; undo brings it back.`);
-    chips.children[index - 1].querySelector("input").focus();
+    chips.focus(index - 1);
   });
-
   settings.addEventListener("change", show);
-  picked.addEventListener("pick", show);
+  picked.addEventListener("pick", () => {
+    stage.light = picked.index;
+    show();
+  });
   show();
+}
+
+// With what was changed of it.
+function mainLight(settings) {
+  const fields = Object.keys(settings.original("light"));
+  return Object.fromEntries(fields.map((field) => [field, settings.value(`light.${field}`)]));
+}
+
+// The same light from another side, without its ambient light: that would be counted twice.
+function another(light) {
+  const azimuth = ((light.azimuth + APART + 540) % 360) - 180;
+  return { ...light, azimuth, ambient: [0, 0, 0] };
+}
+
+// One radio button for each light.
+class Chips {
+  #place = document.getElementById("lights");
+  #template = document.getElementById("light-chip");
+
+  show(count, chosen) {
+    const { children } = this.#place;
+    while (children.length > count) this.#place.lastElementChild.remove();
+    while (children.length < count) this.#place.append(this.#chip(children.length));
+    children[chosen].querySelector("input").checked = true;
+  }
+
+  focus(index) {
+    this.#place.children[index].querySelector("input").focus();
+  }
+
+  #chip(index) {
+    const made = this.#template.content.cloneNode(true);
+    const button = made.querySelector("input");
+    button.setAttribute("aria-label", index ? `Light ${index + 1}` : "Main light");
+    button.addEventListener("change", () => picked.pick(index));
+    made.querySelector("span").textContent = index ? index + 1 : "Main";
+    return made;
+  }
 }

@@ -2,73 +2,83 @@
 import { Scale, written } from "./numbers.js";
 import { upload } from "./server.js";
 
-export function start({ settings, say }) {
-  const select = document.getElementById("object");
-  const faces = document.getElementById("object-faces");
+export function start(context) {
+  const chooser = new Chooser(context);
   const file = document.getElementById("object-file");
-  const problem = document.getElementById("object-problem");
-  const notes = document.getElementById("object-notes");
-  const builtIn = new Set([...select.options].map(({ value }) => value));
-  const scale = new Scale({ ...faces.dataset, label: "faces", low: 1, high: 1, step: 1, whole: "" });
-  const usual = Number(faces.dataset.default);
+  document.getElementById("open-object").addEventListener("click", () => file.click());
+  file.addEventListener("change", () => {
+    if (file.files[0]) chooser.load(file.files[0]);
+    file.value = ""; // so that the same file may be chosen again
+  });
+  dropAnywhere((mesh) => chooser.load(mesh));
+}
 
-  function show() {
-    const object = settings.value("object");
-    const [name, count] = shapeOf(object, builtIn) ?? [object, ""];
-    if (![...select.options].some(({ value }) => value === name)) select.add(new Option(fileName(name), name));
-    select.value = name;
-    faces.disabled = !builtIn.has(name);
-    if (document.activeElement !== faces) faces.value = builtIn.has(name) ? written(count ?? usual) : "";
-    document.getElementById("object-name").textContent = builtIn.has(name) ? object : fileName(name);
-    document.title = `${document.getElementById("object-name").textContent} – fakesss tune`;
+class Chooser {
+  #select = document.getElementById("object");
+  #faces = document.getElementById("object-faces");
+  #problem = document.getElementById("object-problem");
+  #notes = document.getElementById("object-notes");
+  #builtIn = new Set([...this.#select.options].map(({ value }) => value));
+  #scale = new Scale({ ...this.#faces.dataset, label: "faces", low: 1, high: 1, step: 1, whole: "" });
+  #usual = Number(this.#faces.dataset.default);
+
+  constructor({ settings, say }) {
+    Object.assign(this, { settings, say });
+    this.#select.addEventListener("change", () => this.#choose());
+    this.#faces.addEventListener("change", () => this.#choose());
+    settings.addEventListener("change", () => this.#show());
+    this.#show();
   }
 
-  function tell(sentence) {
-    problem.textContent = sentence;
-    problem.hidden = !sentence;
-    faces.setAttribute("aria-invalid", Boolean(sentence));
-  }
-
-  function choose() {
-    const name = select.value;
-    if (!builtIn.has(name)) return settings.set("object", name);
-    const read = faces.value ? scale.read(faces.value) : { value: usual };
-    tell(read.problem ?? "");
-    if (!read.problem) settings.set("object", read.value === usual ? name : `${name}:${read.value}`);
-  }
-
-  async function load(mesh) {
-    tell("");
-    notes.textContent = `Reading ${mesh.name} …`;
+  // Sends a file to the server, which takes it for the object if it can be read.
+  async load(mesh) {
+    this.#tell("");
+    this.#notes.textContent = `Reading ${mesh.name} …`;
     try {
-      const found = await upload(`object?name=${encodeURIComponent(mesh.name)}`, mesh);
-      select.add(new Option(mesh.name, found.object));
-      settings.set("object", found.object);
-      notes.textContent = [`${mesh.name}: ${written(found.faces)} faces, ${written(found.vertices)} vertices.`, ...found.notes].join(" ");
+      const { object, faces, vertices, notes } = await upload(`object?name=${encodeURIComponent(mesh.name)}`, mesh);
+      this.#offer(object, mesh.name);
+      this.settings.set("object", object);
+      const counts = `${mesh.name}: ${faces.toLocaleString("en")} faces, ${vertices.toLocaleString("en")} vertices.`;
+      this.#notes.textContent = [counts, ...notes].join(" ");
     } catch (error) {
-      notes.textContent = "";
-      tell(error.message);
-      say("error", error.message);
+      this.#notes.textContent = "";
+      this.#tell(error.message);
+      this.say("error", error.message);
     }
   }
 
-  select.addEventListener("change", choose);
-  faces.addEventListener("change", choose);
-  document.getElementById("open-object").addEventListener("click", () => file.click());
-  file.addEventListener("change", () => {
-    if (file.files[0]) load(file.files[0]);
-    file.value = ""; // so that the same file may be chosen again
-  });
-  dropAnywhere(load);
-  settings.addEventListener("change", show);
-  show();
-}
+  #choose() {
+    const name = this.#select.value;
+    if (!this.#builtIn.has(name)) return this.settings.set("object", name);
+    const { value, problem } = this.#faces.value ? this.#scale.read(this.#faces.value) : { value: this.#usual };
+    this.#tell(problem ?? "");
+    if (!problem) this.settings.set("object", value === this.#usual ? name : `${name}:${value}`);
+  }
 
-// "knot:60000" as ["knot", 60000], "knot" as ["knot"]; null for a file.
-function shapeOf(object, builtIn) {
-  const [name, count] = object.split(":");
-  if (!builtIn.has(name)) return null;
-  return count === undefined ? [name] : [name, Number(count)];
+  #show() {
+    const object = this.settings.value("object");
+    const [shape, count] = object.split(":");
+    const isBuiltIn = this.#builtIn.has(shape);
+    const title = isBuiltIn ? object : fileName(object);
+    this.#offer(isBuiltIn ? shape : object, isBuiltIn ? shape : title);
+    this.#select.value = isBuiltIn ? shape : object;
+    this.#faces.disabled = !isBuiltIn;
+    if (document.activeElement !== this.#faces) this.#faces.value = isBuiltIn ? (count ?? this.#usual) : "";
+    const heading = document.getElementById("object-name");
+    if (heading.textContent === title) return;
+    heading.textContent = title;
+    document.title = `${title} – fakesss tune`;
+  }
+
+  #offer(object, title) {
+    if (![...this.#select.options].some(({ value }) => value === object)) this.#select.add(new Option(title, object));
+  }
+
+  #tell(sentence) {
+    this.#problem.textContent = sentence;
+    this.#problem.hidden = !sentence;
+    this.#faces.setAttribute("aria-invalid", Boolean(sentence));
+  }
 }
 
 function fileName(path) {
@@ -78,10 +88,9 @@ function fileName(path) {
 function dropAnywhere(load) {
   const sign = document.getElementById("drop");
   let depth = 0; // a drag enters an element before it leaves the one around it
-  const holdsFile = (event) => event.dataTransfer?.types.includes("Files");
   const on = (kind, act) =>
     addEventListener(kind, (event) => {
-      if (!holdsFile(event)) return;
+      if (!event.dataTransfer?.types.includes("Files")) return;
       event.preventDefault(); // or the browser would leave the page for the file
       act(event);
       sign.hidden = depth === 0;
