@@ -1,5 +1,6 @@
 """The tuner's stage: what hands, fingers, keys and the clock do to the picture, and what stands on the canvas."""
 
+import base64
 import io
 import itertools
 import json
@@ -275,6 +276,26 @@ def test_two_device_pixels_a_css_pixel(browser: Browser, url: str) -> None:
         tab(page, "Shader")
         page.locator("#show-box").check()
         assert on_canvas(page, "#overlay").shape == (SIZE, SIZE, 4)
+
+
+@pytest.mark.parametrize("ratio", [1.25, *(pytest.param(ratio, marks=pytest.mark.long) for ratio in (1.5, 1.75, 2))])
+def test_a_pixel_of_the_picture_is_one_of_the_screen(launch: Callable[..., Browser], url: str, ratio: float) -> None:
+    browser = launch(f"--force-device-scale-factor={ratio}", "--window-size=1113,801")
+    page = browser.new_context(no_viewport=True).new_page()  # an emulated ratio is drawn in another way
+    opened(page, url)
+    devtools = page.context.new_cdp_session(page)
+
+    def is_the_canvas() -> bool:
+        taken = devtools.send("Page.captureScreenshot", {"format": "png"})
+        screen = np.asarray(Image.open(io.BytesIO(base64.b64decode(taken["data"]))).convert("RGB"))
+        corner = page.locator("#picture").evaluate(
+            "e => [e.getBoundingClientRect().left, e.getBoundingClientRect().top]"
+        )
+        left, top = (round(side * ratio) for side in corner)
+        return np.array_equal(screen[top : top + SIZE, left : left + SIZE], on_canvas(page)[..., :3])
+
+    wait(page, is_the_canvas)
+    browser.close()
 
 
 def test_a_picture_without_room_is_said_to_be_smaller(page: Page, url: str) -> None:
