@@ -162,16 +162,18 @@ def test_a_picture_that_nobody_fetches_any_more(url: str, held: Bake, monkeypatc
 @pytest.mark.gl
 def test_two_who_wait_for_the_same_share_it(url: str, held: Bake) -> None:
     held.go.set()
-    with tab(url) as first:
+    with tab(url) as first, tab(url) as third:
         first.finished()
         held.go.clear()
         with tab(url) as second:
-            for viewer in (first, second):
+            for viewer in (first, second, third):
                 stand_in(viewer, {"occlusion.rays": 24})
+                viewer.message(type="working", what="Occlusion with 24 rays a vertex")
             until(lambda: held.asked[-1] == 24)
-        held.go.set()  # the second has left, the first still waits
-        first.message(type="again")
-        assert stand_in(first, {"occlusion.rays": 24}).header["stand_in"] == ""
+        held.go.set()  # the second has left, the others still wait
+        for viewer in (first, third):
+            viewer.message(type="again")
+            assert stand_in(viewer, {"occlusion.rays": 24}).header["stand_in"] == ""
     assert held.asked == [16, 24] and held.given_up == []
 
 

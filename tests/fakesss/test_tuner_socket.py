@@ -121,11 +121,11 @@ def has_asked(tuner: Tuner, azimuth: float) -> bool:
 
 
 def test_every_viewer_has_its_own_camera_and_its_turn(tuner: Tuner, url: str, held: Studio) -> None:
-    """Two that ask while a third is drawn come before its next picture."""
+    """Two that ask while a third is drawn come before its next picture, with what they want by then."""
     with tab(url) as first, tab(url) as second, tab(url) as third:
         first.wish(turned(1))
         assert held.started.wait(60)
-        for viewer, azimuth in ((second, 20), (third, 30), (first, 2)):
+        for viewer, azimuth in ((second, 10), (third, 30), (second, 20), (first, 2)):
             viewer.wish(turned(azimuth))
             until(lambda azimuth=azimuth: has_asked(tuner, azimuth))  # type: ignore[misc]
         held.go.set()
