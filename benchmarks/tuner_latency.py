@@ -29,7 +29,6 @@ from typing import Any
 
 import click
 import numpy as np
-import pandas as pd
 from playwright.sync_api import Browser, Page, sync_playwright
 
 from fakesss.bench import machine
@@ -248,6 +247,18 @@ def cases(faces: Sequence[int], usual: int) -> Iterator[tuple[str, int, int]]:
     yield ("drag", usual, 2)
 
 
+def table(rows: Sequence[Row]) -> str:
+    """What docs/tuner.md shows of them, in Markdown."""
+    heads = ("gesture", "faces", "viewers", "pictures/s", "median", "95 %", "newest", "drawing", "outside", "still")
+    lines = [f"| {' | '.join(heads)} |", f"|---|{'--:|' * (len(heads) - 1)}"]
+    for row in rows:
+        times = (row.per_second, row.median, row.p95, row.newest, row.draw)
+        told = [row.gesture, f"{row.faces:,}", row.viewers, *(f"{time:.0f}" for time in times)]
+        told += [f"{row.outside_drawing_of_answer:.0%}", f"{row.still:.0f}"]
+        lines.append(f"| {' | '.join(map(str, told))} |")
+    return "\n".join(lines)
+
+
 @click.command()
 @click.option("--faces", type=int, multiple=True, default=(4000, 60000, 240000), show_default=True)
 @click.option("--usual", default=60000, show_default=True, help="Faces for the other gestures and two viewers.")
@@ -265,7 +276,7 @@ def main(faces: tuple[int, ...], usual: int, moves: int, out: Path) -> None:
     where = {**machine(), "chromium": version, "load_before": load}
     document = {"method": __doc__, "machine": where, "moves": moves, "rows": [asdict(row) for row in rows]}
     (out / "latency.json").write_text(json.dumps(document, indent=1), encoding="utf-8")
-    click.echo(pd.DataFrame(rows).round(2).to_string(index=False))
+    click.echo(table(rows))
 
 
 if __name__ == "__main__":
