@@ -22,7 +22,7 @@ export class NumberField {
     this.typed.addEventListener("change", () => this.#read());
     for (const input of [this.slider, this.typed].filter(Boolean)) {
       input.addEventListener("keydown", (event) => this.#press(event));
-      input.addEventListener("keyup", () => this.#release());
+      input.addEventListener("keyup", ({ key }) => key !== "Shift" && this.#release());
       input.addEventListener("blur", () => this.#release());
     }
   }
@@ -50,10 +50,12 @@ export class NumberField {
     if (event.key === "Enter") this.#read();
     if (event.key === "Escape" && this.#isTyping) this.forget();
     const isSlider = event.target === this.slider;
+    if (!isSlider && /Up|Down/.test(event.key)) this.#read(); // steps go on from what was typed
     const to = this.#to(event, isSlider);
     if (to === null || event.ctrlKey || event.altKey || event.metaKey) return;
     event.preventDefault();
-    this.forget();
+    if (isSlider) this.forget();
+    if (this.#isTyping) return; // what is wrong stays to be mended
     this.#isStepping = true;
     this.#value = to; // a held key may repeat before this is shown
     this.hands.change(to, true);
@@ -85,6 +87,7 @@ export class NumberField {
     this.#say(problem);
     if (problem) return;
     this.forget();
+    this.#value = value;
     this.hands.change(value, false);
   }
 
