@@ -1,11 +1,10 @@
-"""The tuner's stage: what hands, fingers, keys and the clock do to the picture, and what stands on the canvas."""
+"""The tuner's stage: what stands on the canvas, pixel by pixel, and what is said of it."""
 
 import base64
 import io
 import itertools
 import json
 import secrets
-import struct
 from collections.abc import Callable, Iterator
 from pathlib import Path
 from typing import Any
@@ -13,8 +12,8 @@ from typing import Any
 import numpy as np
 import pytest
 from PIL import Image
-from playwright.sync_api import Browser, CDPSession, Page, WebSocketRoute, expect
-from tuner_pages import Pixels, Talk, drag, middle, on_canvas, opened, wait
+from playwright.sync_api import Browser, Page, WebSocketRoute, expect
+from tuner_pages import Pixels, drag, middle, on_canvas, opened, panel, rewrite, wait
 from tuner_server import tuned
 
 from fakesss.camera import View
@@ -27,7 +26,6 @@ SIZE = 128
 BASE = Scene.from_dict(
     {"object": "torus:1000", "size": (SIZE, SIZE), "supersampling": 2, "occlusion": {"rays": 4}}, "test"
 )
-HALF_TURN = 180 / SIZE  # degrees by one CSS pixel
 
 
 @pytest.fixture(scope="module")
@@ -44,14 +42,6 @@ def rendered(changes: dict[str, Any], folder: Path) -> Pixels:
     return np.asarray(Image.open(path).convert("RGB"))
 
 
-def by_hand(page: Page, url: str) -> Talk:
-    """The page with its first picture, and a clock that stands still unless it is told to run."""
-    page.clock.install(time=0)
-    talk = opened(page, url)
-    page.clock.pause_at(3600)
-    return talk
-
-
 def test_the_canvas_holds_the_rendered_picture_pixel_by_pixel(page: Page, url: str, tmp_path: Path) -> None:
     talk = opened(page, url)
     assert np.array_equal(on_canvas(page)[..., :3], rendered({}, tmp_path))
@@ -63,23 +53,6 @@ def test_the_canvas_holds_the_rendered_picture_pixel_by_pixel(page: Page, url: s
     assert box
     assert (box["width"], box["height"]) == (SIZE, SIZE)
     assert (box["x"] % 1, box["y"] % 1) == (0, 0)  # on whole pixels
-
-
-def test_a_drag_turns_the_object_and_is_one_step_of_undo(page: Page, url: str) -> None:
-    talk = opened(page, url)
-    drag(page, 40, 16)
-    header = talk.settled(after=2)
-    assert talk.changes == {
-        "camera.azimuth": pytest.approx(-40 * HALF_TURN, abs=0.1),
-        "camera.elevation": pytest.approx(BASE.camera.elevation + 16 * HALF_TURN, abs=0.1),
-    }
-    moving = [frame for frame in talk.of("frame") if frame["moving"]]
-    assert moving and {frame["type"] for frame in moving} == {"image/jpeg"}
-    assert talk.most_under_way == 1
-    page.locator("#undo").click()
-    assert talk.settled(after=header["number"])["scene_sha256"] == talk.of("frame")[0]["scene_sha256"]
-    assert talk.changes == {}
-    expect(page.locator("#undo")).to_be_disabled()
 
 
 def test_a_moving_picture_of_fewer_pixels_stands_in_the_place_of_the_still_one(page: Page, url: str) -> None:
@@ -106,165 +79,6 @@ def test_a_moving_picture_of_fewer_pixels_stands_in_the_place_of_the_still_one(p
     assert on_canvas(page)[..., :3].max() > 100
 
 
-def rewrite(
-    page: Page, header: Callable[[dict[str, Any]], dict[str, Any]], image: Callable[[dict[str, Any], bytes], bytes]
-) -> None:
-    """Frames come to the page with another header and image."""
-
-    def between(route: WebSocketRoute) -> None:
-        server = route.connect_to_server()
-
-        def passed_on(message: str | bytes) -> None:
-            if isinstance(message, bytes):
-                (length,) = struct.unpack_from("<I", message)
-                told = json.loads(message[4 : 4 + length])
-                text = json.dumps(header(told)).encode()
-                message = struct.pack("<I", len(text)) + text + image(told, message[4 + length :])
-            route.send(message)
-
-        server.on_message(passed_on)
-
-    page.route_web_socket("**/socket", between)
-
-
-@pytest.mark.parametrize(
-    ("button", "moved"), [("right", {"light.azimuth", "light.elevation"}), ("middle", {"camera.field_of_view"})]
-)
-def test_other_buttons_move_the_light_and_the_lens(page: Page, url: str, button: str, moved: set[str]) -> None:
-    talk = opened(page, url)
-    drag(page, 12, -12, button)
-    talk.settled(after=1)
-    assert set(talk.changes) == moved
-    if button == "right":
-        assert talk.changes["light.azimuth"] == pytest.approx(BASE.light.azimuth + 12 * HALF_TURN, abs=0.1)
-        assert talk.changes["light.elevation"] == pytest.approx(BASE.light.elevation + 12 * HALF_TURN, abs=0.1)
-    else:
-        assert talk.changes["camera.field_of_view"] < BASE.camera.field_of_view
-
-
-def test_the_menu_is_kept_away_from_the_picture_only(page: Page, url: str) -> None:
-    opened(page, url)
-    asked = """element => !element.dispatchEvent(new MouseEvent("contextmenu", { bubbles: true, cancelable: true }))"""
-    assert page.locator("#picture").evaluate(asked)
-    assert not page.locator(".bar").evaluate(asked)
-
-
-def test_elevation_ends_at_the_poles(page: Page, url: str) -> None:
-    talk = opened(page, url)
-    drag(page, 0, 200)
-    talk.settled(after=1)
-    assert talk.changes == {"camera.elevation": 90}
-
-
-def test_the_wheel_zooms_from_the_fitted_distance_in_one_step(page: Page, url: str) -> None:
-    talk = by_hand(page, url)
-    page.mouse.move(*middle(page))
-    fitted = 1 / np.sin(np.radians(BASE.camera.field_of_view / 2))
-    for turn in range(1, 4):
-        page.mouse.wheel(0, 100)
-        there = pytest.approx(fitted * np.exp(0.1 * turn), rel=1e-3)
-        wait(page, lambda there=there: talk.changes == {"camera.distance": there})
-    assert talk.of("wish")[-1]["moving"]
-    page.clock.run_for(1000)  # the hand is off the wheel
-    assert not talk.settled()["moving"]
-    page.locator("#undo").click()
-    wait(page, lambda: talk.changes == {})
-
-
-def test_a_double_click_puts_the_camera_back(page: Page, url: str) -> None:
-    talk = opened(page, url)
-    drag(page, 30, 10)
-    talk.settled(after=1)
-    page.locator("#place").dblclick()
-    wait(page, lambda: talk.changes == {})
-
-
-@pytest.mark.parametrize(
-    ("keys", "changes"),
-    [
-        (["ArrowRight"] * 4, {"camera.azimuth": -20}),
-        (["ArrowDown"] * 2, {"camera.elevation": 18}),
-        (["Shift+ArrowLeft"] * 3, {"light.azimuth": -50}),
-        (["-"] * 2, {"camera.distance": pytest.approx(3.8637 * 1.05**2, rel=1e-3)}),
-    ],
-)
-def test_a_held_key_is_one_gesture(page: Page, url: str, keys: list[str], changes: dict[str, Any]) -> None:
-    talk = opened(page, url)
-    page.locator("#place").focus()
-    *held, key = keys[0].split("+")
-    for modifier in held:
-        page.keyboard.down(modifier)
-    for _ in keys:
-        page.keyboard.down(key)  # again and again without an end: that is what holding it looks like
-    assert page.locator("#spoken").text_content() == ""
-    page.keyboard.up(key)
-    talk.settled(after=1)
-    assert talk.changes == changes
-    expect(page.locator("#spoken")).to_contain_text("Camera")
-    for modifier in held:
-        page.keyboard.up(modifier)
-    page.locator("#undo").click()
-    wait(page, lambda: talk.changes == {})
-
-
-class Fingers:
-    """Touches by the browser's own protocol."""
-
-    def __init__(self, page: Page) -> None:
-        self.devtools: CDPSession = page.context.new_cdp_session(page)
-
-    def touch(self, kind: str, *points: tuple[float, float]) -> None:
-        places = [{"x": x, "y": y, "id": number} for number, (x, y) in enumerate(points)]
-        self.devtools.send("Input.dispatchTouchEvent", {"type": kind, "touchPoints": places})
-
-    def drag(self, start: list[tuple[float, float]], end: list[tuple[float, float]], steps: int = 8) -> None:
-        self.touch("touchStart", *start)
-        for step in range(1, steps + 1):
-            share = step / steps
-            between = [(a + share * (c - a), b + share * (d - b)) for (a, b), (c, d) in zip(start, end, strict=True)]
-            self.touch("touchMove", *between)
-        self.touch("touchEnd")
-
-
-@pytest.fixture
-def tablet(browser: Browser) -> Iterator[Page]:
-    """A page that is touched."""
-    with browser.new_context(viewport={"width": 1024, "height": 768}, has_touch=True) as context:
-        yield context.new_page()
-
-
-def test_one_finger_turns_two_light_and_a_pinch_zooms(tablet: Page, url: str) -> None:
-    talk = opened(tablet, url)
-    x, y = middle(tablet)
-    fingers = Fingers(tablet)
-    fingers.drag([(x, y)], [(x + 40, y)])
-    talk.settled(after=1)
-    assert set(talk.changes) == {"camera.azimuth"}
-    seen = len(talk.of("wish"))
-    fingers.drag([(x - 30, y), (x + 30, y)], [(x + 10, y - 20), (x + 70, y - 20)])
-    talk.settled(after=seen)
-    assert set(talk.changes) == {"camera.azimuth", "light.azimuth", "light.elevation"}
-    assert talk.changes["light.azimuth"] > BASE.light.azimuth
-    assert talk.changes["light.elevation"] > BASE.light.elevation
-    seen = len(talk.of("wish"))
-    fingers.drag([(x - 20, y), (x + 20, y)], [(x - 60, y), (x + 60, y)])
-    talk.settled(after=seen)
-    assert talk.changes["camera.distance"] < 3.8637 * 0.5
-    for left in ({"camera.azimuth", "light.azimuth", "light.elevation"}, {"camera.azimuth"}, set()):
-        tablet.locator("#undo").click()
-        wait(tablet, lambda left=left: set(talk.changes) == left)
-
-
-def test_a_touch_that_is_taken_away_ends_the_gesture(tablet: Page, url: str) -> None:
-    talk = opened(tablet, url)
-    x, y = middle(tablet)
-    fingers = Fingers(tablet)
-    fingers.touch("touchStart", (x, y))
-    fingers.touch("touchMove", (x + 30, y))
-    fingers.touch("touchCancel")
-    assert not talk.settled(after=1)["moving"]
-
-
 def test_two_device_pixels_a_css_pixel(browser: Browser, url: str) -> None:
     with browser.new_context(viewport={"width": 1000, "height": 700}, device_scale_factor=2) as context:
         page = context.new_page()
@@ -273,7 +87,7 @@ def test_two_device_pixels_a_css_pixel(browser: Browser, url: str) -> None:
         assert box
         assert (box["width"], box["height"]) == (SIZE / 2, SIZE / 2)
         assert on_canvas(page).shape == (SIZE, SIZE, 4)
-        tab(page, "Shader")
+        panel(page, "Shader")
         page.locator("#show-box").check()
         assert on_canvas(page, "#overlay").shape == (SIZE, SIZE, 4)
 
@@ -353,76 +167,6 @@ def test_an_error_keeps_the_last_good_picture(page: Page, url: str) -> None:
     expect(page.locator("#log li")).to_have_count(0)
 
 
-def tab(page: Page, name: str) -> None:
-    """Open one of the panel's tabs."""
-    page.get_by_role("tab", name=name).click()
-
-
-def test_auto_rotation_keeps_to_the_clock(page: Page, url: str) -> None:
-    talk = by_hand(page, url)
-    tab(page, "Camera")
-    page.locator("#auto-rotation").check()
-    page.clock.run_for(2000)
-    page.locator("#auto-rotation").uncheck()
-    talk.settled(after=1)
-    assert talk.changes == {"camera.azimuth": pytest.approx(60, abs=1)}  # 30 degrees a second
-    page.locator("#undo").click()
-    wait(page, lambda: talk.changes == {})
-
-
-def test_what_is_set_while_it_turns_is_a_step_of_its_own(page: Page, url: str) -> None:
-    talk = by_hand(page, url)
-    tab(page, "Camera")
-    page.locator("#auto-rotation").check()
-    page.clock.run_for(1000)
-    page.locator("#place").focus()
-    page.keyboard.press("Shift+ArrowUp")
-    page.clock.run_for(1000)
-    wait(page, lambda: talk.changes["camera.azimuth"] > 55)
-    assert talk.of("wish")[-1]["moving"]
-    page.locator("#undo").click()  # which also stops it
-    wait(page, lambda: set(talk.changes) == {"camera.azimuth"} and talk.changes["camera.azimuth"] < 35)
-    expect(page.locator("#auto-rotation")).not_to_be_checked()
-    page.locator("#undo").click()
-    wait(page, lambda: talk.changes == {})
-
-
-def test_random_lighting_moves_the_light_alone_and_steadily(page: Page, url: str) -> None:
-    talk = by_hand(page, url)
-    tab(page, "Lights")
-    page.locator("#random-lighting").check()
-    page.clock.run_for(3000)
-    page.locator("#random-lighting").uncheck()
-    talk.settled(after=1)
-    assert set(talk.changes) <= {"light.azimuth", "light.elevation"}
-
-    def towards(azimuth: float, elevation: float) -> Any:
-        a, e = np.radians((azimuth, elevation))
-        return np.array([np.sin(a) * np.cos(e), np.sin(e), np.cos(a) * np.cos(e)])
-
-    now = {"azimuth": BASE.light.azimuth, "elevation": BASE.light.elevation}
-    now |= {path.removeprefix("light."): value for path, value in talk.changes.items()}
-    cosine = towards(BASE.light.azimuth, BASE.light.elevation) @ towards(**now)
-    assert 0 < np.degrees(np.arccos(np.clip(cosine, -1, 1))) < 61  # 20 degrees a second, on a way that may turn
-    page.locator("#undo").click()
-    wait(page, lambda: talk.changes == {})
-
-
-def test_who_wants_less_motion_is_asked(browser: Browser, url: str) -> None:
-    with browser.new_context(reduced_motion="reduce") as context:
-        page = context.new_page()
-        talk = opened(page, url)
-        tab(page, "Camera")
-        page.locator("#auto-rotation").click()
-        page.get_by_role("button", name="Keep still").click()
-        expect(page.locator("#auto-rotation")).not_to_be_checked()
-        assert talk.changes == {}
-        page.locator("#auto-rotation").click()
-        page.get_by_role("button", name="Let it move").click()
-        wait(page, lambda: talk.changes)
-        expect(page.locator("#auto-rotation")).to_be_checked()
-
-
 def test_box_and_axes_are_over_the_picture_and_not_in_it(page: Page, url: str) -> None:
     talk = opened(page, url)
     page.locator("#place").focus()
@@ -430,7 +174,7 @@ def test_box_and_axes_are_over_the_picture_and_not_in_it(page: Page, url: str) -
         page.keyboard.press("-")  # the whole box in the picture
     header = talk.settled(after=2)
     before = on_canvas(page)
-    tab(page, "Shader")
+    panel(page, "Shader")
     assert not on_canvas(page, "#overlay").any()
     page.locator("#show-box").check()
     box = on_canvas(page, "#overlay")

@@ -8,7 +8,7 @@ from typing import Any
 
 import numpy as np
 import numpy.typing as npt
-from playwright.sync_api import Page, WebSocket
+from playwright.sync_api import Page, WebSocket, WebSocketRoute
 
 Pixels = npt.NDArray[np.uint8]
 Told = dict[str, Any]
@@ -68,7 +68,8 @@ class Talk:
         place = self.page.locator("#place")
         shown = place.get_attribute("data-wish"), place.get_attribute("data-moving")
         frames = self.of("frame")
-        return shown == (str(wish["number"]), "false") and frames[-1]["number"] == wish["number"]
+        is_last = shown == (str(wish["number"]), "false") and frames[-1]["number"] == wish["number"]
+        return is_last and not frames[-1]["stand_in"]
 
 
 def wait(page: Page, condition: Callable[[], object]) -> None:
@@ -115,3 +116,37 @@ def drag(page: Page, right: float, down: float, button: Any = "left", steps: int
     page.mouse.down(button=button)
     page.mouse.move(x + right, y + down, steps=steps)
     page.mouse.up(button=button)
+
+
+def by_hand(page: Page, url: str) -> Talk:
+    """The page with its first picture, and a clock that stands still unless it is told to run."""
+    page.clock.install(time=0)
+    talk = opened(page, url)
+    page.clock.pause_at(3600)
+    return talk
+
+
+def rewrite(
+    page: Page, header: Callable[[dict[str, Any]], dict[str, Any]], image: Callable[[dict[str, Any], bytes], bytes]
+) -> None:
+    """Frames come to the page with another header and image."""
+
+    def between(route: WebSocketRoute) -> None:
+        server = route.connect_to_server()
+
+        def passed_on(message: str | bytes) -> None:
+            if isinstance(message, bytes):
+                (length,) = struct.unpack_from("<I", message)
+                told = json.loads(message[4 : 4 + length])
+                text = json.dumps(header(told)).encode()
+                message = struct.pack("<I", len(text)) + text + image(told, message[4 + length :])
+            route.send(message)
+
+        server.on_message(passed_on)
+
+    page.route_web_socket("**/socket", between)
+
+
+def panel(page: Page, name: str) -> None:
+    """Open one of the panel's tabs."""
+    page.get_by_role("tab", name=name).click()
