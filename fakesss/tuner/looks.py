@@ -10,8 +10,9 @@ from typing import Any, NamedTuple, TypedDict
 import numpy as np
 from matplotlib import colormaps
 from numpy.typing import NDArray
+from PIL import Image
 
-from fakesss.contact_sheet import EXACT, MARK, OTHER, SOFTENED, Colour, Panel, Plot
+from fakesss.contact_sheet import EXACT, MARK, OTHER, SOFTENED, Colour, Panel, Plot, Size
 from fakesss.scene import Scene
 from fakesss.views import KINDS, landscape, profile, view
 
@@ -26,6 +27,9 @@ DRAWINGS = frozenset(name for name, kind in KINDS.items() if kind.make in (lands
 
 ONE_SAMPLE = frozenset(name for name, kind in KINDS.items() if kind.reads)
 """Those with one sample a pixel, however many the picture has."""
+
+LETTERED = {"profile": 400}
+"""Pixels of the shorter side that a drawing's letters need: they are as large while it moves as when it rests."""
 
 STOPS = 33  # of a legend's colour scale; with straight lines between them colours are right to 6/255
 ENDS = {  # of a colour map, in words
@@ -78,8 +82,15 @@ def look(scene: Scene, name: str) -> Look:
     """
     seen = view(scene.replace({"alpha": False}) if scene.alpha else scene, name)
     if isinstance(seen, Plot):
-        return Look(seen.draw(scene.size), *plot_words(name, seen))
+        return Look(drawing(seen, scene.size, LETTERED.get(name, 1)), *plot_words(name, seen))
     return Look(seen.pixels(), panel_words(seen), legend(seen))
+
+
+def drawing(plot: Plot, size: Size, least: int) -> Bytes:
+    """A plot at `size`, made smaller from one whose shorter side has `least` pixels."""
+    factor = max(1.0, least / min(size))
+    drawn = plot.draw((round(size[0] * factor), round(size[1] * factor)))
+    return drawn if factor == 1 else np.asarray(Image.fromarray(drawn).resize(size, Image.Resampling.BOX))
 
 
 def plot_words(name: str, plot: Plot) -> tuple[str, Legend]:

@@ -55,6 +55,16 @@ def test_nothing_lies_over_the_data(looks: dict[str, Look], name: str) -> None:
 
 
 @pytest.mark.gl
+def test_a_profile_of_fewer_pixels_has_no_larger_letters() -> None:
+    """A moving picture may be drawn smaller, and is shown as large as the one at rest."""
+    small, large = (
+        look(SCENE.replace({"size": size}), "profile").pixels.astype(float) for size in ((200, 200), (400, 400))
+    )
+    halved = large.reshape(200, 2, 200, 2, 3).mean(axis=(1, 3))
+    assert np.abs(small - halved).mean() < 2
+
+
+@pytest.mark.gl
 def test_marks_are_the_marked_pixels_and_no_others() -> None:
     scene = Scene(object="shell:8000", size=(96, 96)).replace({"camera.azimuth": 25.0})
     panel, shown = view(scene, "hard_edges"), look(scene, "hard_edges")
