@@ -6,7 +6,7 @@ from typing import Any
 import numpy as np
 import pytest
 from playwright.sync_api import Browser, CDPSession, Page, expect
-from tuner_pages import by_hand, drag, middle, opened, wait
+from tuner_pages import Talk, by_hand, drag, middle, opened, wait
 from tuner_server import tuned
 
 from fakesss.scene import Scene
@@ -27,10 +27,37 @@ def url(tmp_path_factory: pytest.TempPathFactory) -> Iterator[str]:
         yield address
 
 
-def test_a_drag_turns_the_object_and_is_one_step_of_undo(page: Page, url: str) -> None:
-    talk = opened(page, url)
+@pytest.fixture(scope="module")
+def opened_once(browser: Browser, url: str) -> Iterator[Talk]:
+    """A page for all of these; a script error in it fails the last one."""
+    with browser.new_context(viewport={"width": 1280, "height": 800}) as context:
+        page = context.new_page()
+        errors: list[str] = []
+        page.on("pageerror", lambda error: errors.append(str(error)))
+        yield opened(page, url)
+        assert errors == []
+
+
+@pytest.fixture
+def talk(opened_once: Talk) -> Talk:
+    """That page with everything as at the start."""
+    reset = opened_once.page.locator("#reset-all")
+    if reset.is_enabled():
+        reset.click()
+        wait(opened_once.page, lambda: opened_once.changes == {})
+    opened_once.settled()
+    return opened_once
+
+
+def undone_at_once(talk: Talk) -> None:
+    """Undo leads back to the start in one step."""
+    talk.page.locator("#undo").click()
+    wait(talk.page, lambda: talk.changes == {})
+
+
+def test_a_drag_turns_the_object_and_is_one_step_of_undo(talk: Talk) -> None:
     first = talk.settled()
-    drag(page, 40, 16)
+    drag(talk.page, 40, 16)
     header = talk.settled(after=first["number"])
     assert talk.changes == {
         "camera.azimuth": pytest.approx(-40 * HALF_TURN, abs=0.1),
@@ -39,39 +66,36 @@ def test_a_drag_turns_the_object_and_is_one_step_of_undo(page: Page, url: str) -
     moving = [frame for frame in talk.of("frame") if frame["moving"]]
     assert moving and {frame["type"] for frame in moving} == {"image/jpeg"}
     assert talk.most_under_way == 1
-    page.locator("#undo").click()
+    undone_at_once(talk)
     assert talk.settled(after=header["number"])["scene_sha256"] == first["scene_sha256"]
-    assert talk.changes == {}
-    expect(page.locator("#undo")).to_be_disabled()
 
 
 @pytest.mark.parametrize(
     ("button", "moved"), [("right", {"light.azimuth", "light.elevation"}), ("middle", {"camera.field_of_view"})]
 )
-def test_other_buttons_move_the_light_and_the_lens(page: Page, url: str, button: str, moved: set[str]) -> None:
-    talk = opened(page, url)
-    drag(page, 12, -12, button)
-    talk.settled(after=1)
-    assert set(talk.changes) == moved
+def test_other_buttons_move_the_light_and_the_lens(talk: Talk, button: str, moved: set[str]) -> None:
+    drag(talk.page, 12, -12, button)
+    wait(talk.page, lambda: set(talk.changes) == moved)
+    talk.settled()
     if button == "right":
         assert talk.changes["light.azimuth"] == pytest.approx(BASE.light.azimuth + 12 * HALF_TURN, abs=0.1)
         assert talk.changes["light.elevation"] == pytest.approx(BASE.light.elevation + 12 * HALF_TURN, abs=0.1)
     else:
         assert talk.changes["camera.field_of_view"] < BASE.camera.field_of_view
+    undone_at_once(talk)
 
 
-def test_the_menu_is_kept_away_from_the_picture_only(page: Page, url: str) -> None:
-    opened(page, url)
+def test_the_menu_is_kept_away_from_the_picture_only(talk: Talk) -> None:
     asked = """element => !element.dispatchEvent(new MouseEvent("contextmenu", { bubbles: true, cancelable: true }))"""
-    assert page.locator("#picture").evaluate(asked)
-    assert not page.locator(".bar").evaluate(asked)
+    assert talk.page.locator("#picture").evaluate(asked)
+    assert not talk.page.locator(".bar").evaluate(asked)
 
 
-def test_elevation_ends_at_the_poles(page: Page, url: str) -> None:
-    talk = opened(page, url)
-    drag(page, 0, 200)
-    talk.settled(after=1)
-    assert talk.changes == {"camera.elevation": 90}
+def test_elevation_ends_at_the_poles_and_a_double_click_puts_the_camera_back(talk: Talk) -> None:
+    drag(talk.page, 0, 200)
+    wait(talk.page, lambda: talk.changes == {"camera.elevation": 90})
+    talk.page.locator("#place").dblclick()
+    wait(talk.page, lambda: talk.changes == {})
 
 
 def test_the_wheel_zooms_from_the_fitted_distance_in_one_step(page: Page, url: str) -> None:
@@ -85,44 +109,33 @@ def test_the_wheel_zooms_from_the_fitted_distance_in_one_step(page: Page, url: s
     assert talk.of("wish")[-1]["moving"]
     page.clock.run_for(1000)  # the hand is off the wheel
     assert not talk.settled()["moving"]
-    page.locator("#undo").click()
-    wait(page, lambda: talk.changes == {})
-
-
-def test_a_double_click_puts_the_camera_back(page: Page, url: str) -> None:
-    talk = opened(page, url)
-    drag(page, 30, 10)
-    talk.settled(after=1)
-    page.locator("#place").dblclick()
-    wait(page, lambda: talk.changes == {})
+    undone_at_once(talk)
 
 
 @pytest.mark.parametrize(
-    ("keys", "changes"),
+    ("keys", "changes", "said"),
     [
-        (["ArrowRight"] * 4, {"camera.azimuth": -20}),
-        (["ArrowDown"] * 2, {"camera.elevation": 18}),
-        (["Shift+ArrowLeft"] * 3, {"light.azimuth": -50}),
-        (["-"] * 2, {"camera.distance": pytest.approx(3.8637 * 1.05**2, rel=1e-3)}),
+        (["ArrowRight"] * 4, {"camera.azimuth": -20}, "Camera -20° around"),
+        (["ArrowDown"] * 2, {"camera.elevation": 18}, "18° up; light"),
+        (["Shift+ArrowLeft"] * 3, {"light.azimuth": -50}, "light -50° around"),
+        (["-"] * 2, {"camera.distance": pytest.approx(3.8637 * 1.05**2, rel=1e-3)}, "Camera 0° around"),
     ],
 )
-def test_a_held_key_is_one_gesture(page: Page, url: str, keys: list[str], changes: dict[str, Any]) -> None:
-    talk = opened(page, url)
-    page.locator("#place").focus()
+def test_a_held_key_is_one_gesture(talk: Talk, keys: list[str], changes: dict[str, Any], said: str) -> None:
+    keyboard, seen = talk.page.keyboard, len(talk.of("wish"))
+    talk.page.locator("#place").focus()
     *held, key = keys[0].split("+")
     for modifier in held:
-        page.keyboard.down(modifier)
+        keyboard.down(modifier)
     for _ in keys:
-        page.keyboard.down(key)  # again and again without an end: that is what holding it looks like
-    assert page.locator("#spoken").text_content() == ""
-    page.keyboard.up(key)
-    talk.settled(after=1)
-    assert talk.changes == changes
-    expect(page.locator("#spoken")).to_contain_text("Camera")
+        keyboard.down(key)  # again and again without an end: that is what holding it looks like
+    keyboard.up(key)
     for modifier in held:
-        page.keyboard.up(modifier)
-    page.locator("#undo").click()
-    wait(page, lambda: talk.changes == {})
+        keyboard.up(modifier)
+    talk.settled(after=seen)
+    assert talk.changes == changes
+    expect(talk.page.locator("#spoken")).to_contain_text(said)
+    undone_at_once(talk)
 
 
 class Fingers:
