@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 from accessible import violations, with_axe
 from PIL import Image
-from playwright.sync_api import BrowserContext, Page, expect
+from playwright.sync_api import Browser, BrowserContext, Page, expect
 from tuner_pages import Pixels, Talk, on_canvas, opened, wait
 from tuner_server import tuned
 
@@ -33,10 +33,40 @@ def url(tmp_path_factory: pytest.TempPathFactory) -> Iterator[str]:
         yield address
 
 
+@pytest.fixture(scope="module")
+def opened_once(browser: Browser, url: str) -> Iterator[Talk]:
+    """A page for most of these; a script error in it fails the last one."""
+    with browser.new_context(viewport={"width": 1280, "height": 800}) as context:
+        page = context.new_page()
+        errors: list[str] = []
+        page.on("pageerror", lambda error: errors.append(str(error)))
+        yield opened(page, url)
+        assert errors == []
+
+
 @pytest.fixture
-def talk(page: Page, url: str) -> Talk:
-    """A page that has its first picture."""
-    return opened(page, url)
+def talk(opened_once: Talk) -> Talk:
+    """That page with everything as at the start but what undo remembers."""
+    page = opened_once.page
+    while page.locator("#pins .remove").count():
+        page.locator("#pins .remove").first.click()
+    if page.locator("#reset-all").is_enabled():
+        page.locator("#reset-all").click()
+        wait(page, lambda: opened_once.changes == {})
+    opened_once.settled()
+    return opened_once
+
+
+@pytest.fixture
+def page(talk: Talk) -> Page:
+    """The page itself."""
+    return talk.page
+
+
+@pytest.fixture
+def fresh(context: BrowserContext, url: str) -> Talk:
+    """A page that nobody has used."""
+    return opened(context.new_page(), url)
 
 
 def rendered(changes: dict[str, Any], folder: Path) -> Pixels:
@@ -61,9 +91,10 @@ def shows(page: Page, picture: Pixels) -> None:
     wait(page, lambda: np.array_equal(on_canvas(page), picture))
 
 
-def test_undo_and_redo_by_button_and_by_key(page: Page, talk: Talk) -> None:
+def test_undo_and_redo_by_button_and_by_key(fresh: Talk) -> None:
+    page = fresh.page
     first = on_canvas(page)
-    second = press(talk, "Shift+ArrowLeft")
+    second = press(fresh, "Shift+ArrowLeft")
     page.keyboard.press("Control+z")
     shows(page, first)
     page.keyboard.press("Control+Shift+Z")
@@ -101,6 +132,8 @@ def test_holding_b_shows_the_setting_before(page: Page, talk: Talk) -> None:
     page.locator("#letter-keys").uncheck()
     page.keyboard.down("b")
     expect(page.locator("#previous")).to_have_attribute("aria-pressed", "false")
+    page.keyboard.up("b")
+    page.locator("#letter-keys").check()
 
 
 def test_the_setting_before_by_a_click_and_until_something_changes(page: Page, talk: Talk) -> None:
@@ -118,9 +151,10 @@ def test_the_setting_before_by_a_click_and_until_something_changes(page: Page, t
     shows(page, third)
 
 
-def test_the_button_can_be_held_too(page: Page, talk: Talk) -> None:
+def test_the_button_can_be_held_too(fresh: Talk) -> None:
+    page = fresh.page
     first = on_canvas(page)
-    second = press(talk, "Shift+ArrowLeft")
+    second = press(fresh, "Shift+ArrowLeft")
     page.clock.install(time=0)
     page.clock.pause_at(10)
     page.locator("#previous").hover()
@@ -179,10 +213,11 @@ def test_a_digit_held_shows_a_pin(page: Page, talk: Talk) -> None:
     shows(page, second)
 
 
-def test_there_are_four_pins_at_most_and_a_reload_keeps_them(page: Page, talk: Talk) -> None:
+def test_there_are_four_pins_at_most_and_a_reload_keeps_them(fresh: Talk) -> None:
+    page = fresh.page
     for number in range(1, 5):
         pinned(page, number)
-        press(talk, "Shift+ArrowLeft")
+        press(fresh, "Shift+ArrowLeft")
     expect(page.locator("#pin")).to_be_disabled()
     page.get_by_role("textbox", name="Name of pin 3").fill("third")
     page.keyboard.press("Tab")
@@ -232,9 +267,10 @@ def test_pictures_of_different_sizes_have_no_difference(page: Page, talk: Talk) 
     expect(page.locator("#difference-words")).to_contain_text("different sizes: 64 × 96 and 96 × 96")
 
 
-def test_a_pin_whose_picture_is_refused_is_taken_away_and_that_is_said(page: Page, talk: Talk) -> None:
+def test_a_pin_whose_picture_is_refused_is_taken_away_and_that_is_said(fresh: Talk) -> None:
+    page = fresh.page
     pinned(page, 1)
-    press(talk, "Shift+ArrowLeft")
+    press(fresh, "Shift+ArrowLeft")
     page.route("**/picture", lambda route: route.fulfill(status=422, json={"error": "There is no such mesh."}))
     page.reload()
     expect(page.locator("#log")).to_contain_text("There is no such mesh.")
