@@ -89,6 +89,7 @@ class Drawn:
     image: bytes
     header: dict[str, Any]
     samples: int  # that were drawn
+    is_usual: bool  # no shader was compiled, so that it took as long as the next will
 
     @property
     def type(self) -> str:
@@ -101,46 +102,72 @@ class Drawn:
         return struct.pack("<I", len(header)) + header + self.image
 
 
+@dataclass(frozen=True)
+class Shown:
+    """What was drawn, before it is said."""
+
+    image: bytes
+    type: str
+    plan: Plan
+    mesh: Mesh
+    gpu_ms: dict[str, float | None]
+    warnings: tuple[str, ...]
+    samples: int
+    drawn: float  # when, on `perf_counter`; what came after is encoding
+    note: str = ""
+    legend: Any = None
+    has_camera: bool = True
+
+
 def draw(renderer: Renderer, asked: Asked) -> Drawn:
     """The picture, or the view of it, that is asked for. Raises `BadInput`, `ShaderError` and `studio.Unprepared`."""
-    started = time.perf_counter()
-    scene = asked.drawn
-    note, legend, has_camera, count = "", None, True, samples(scene)
-    if asked.view == PICTURE:
-        # timing takes no time, but draws shadow maps again that a moving picture could keep
-        timed = not asked.moving or not any(light.shadows for light in lights_of(scene))
-        rendering = renderer.render(scene, timed, asked.forced)
-        plan, mesh, times = rendering.plan, rendering.mesh, {one["name"]: one["gpu_ms"] for one in rendering.passes}
-        drawn = time.perf_counter()
-        image, kind = encoded(rendering, asked.moving)
-        warnings = rendering.notes if asked.moving else rendering.warnings
-    else:
-        from fakesss.tuner.looks import DRAWINGS, ONE_SAMPLE, look  # loads matplotlib, which pictures never need
-
-        plan, mesh = renderer.plan(scene, asked.forced)
-        pixels, note, legend = look(scene, asked.view)
-        has_camera = asked.view not in DRAWINGS
-        count = scene.size[0] * scene.size[1] if asked.view in ONE_SAMPLE else count
-        times, warnings = {}, mesh.repairs
-        drawn = time.perf_counter()
-        image, kind = (jpeg(pixels), "image/jpeg") if asked.moving else (encode_png8(pixels), "image/png")
+    started, scene = time.perf_counter(), asked.drawn
+    known = set(renderer.gpu.programs.compiled.values)
+    shown = picture(renderer, asked) if asked.view == PICTURE else view(renderer, asked)
     header = {
-        "type": kind,
+        "type": shown.type,
         "width": scene.size[0],
         "height": scene.size[1],
         "moving": asked.moving,
         "view": asked.view,
-        "times": {"draw": 1e3 * (drawn - started), "encode": 1e3 * (time.perf_counter() - drawn)},
-        "passes": passes_of(plan, times),
+        "times": {"draw": 1e3 * (shown.drawn - started), "encode": 1e3 * (time.perf_counter() - shown.drawn)},
+        "passes": passes_of(shown.plan, shown.gpu_ms),
         "reasons": reasons(scene, asked.forced),
-        "warnings": list(warnings),
-        **facts_of(mesh),
-        "matrix": world_to_clip(asked.scene) if has_camera else None,
-        "note": note,
-        "legend": legend,
+        "warnings": list(shown.warnings),
+        **facts_of(shown.mesh),
+        "matrix": world_to_clip(asked.scene) if shown.has_camera else None,
+        "note": shown.note,
+        "legend": shown.legend,
         "scene_sha256": scene.sha256(),
     }
-    return Drawn(image, header, count)
+    return Drawn(shown.image, header, shown.samples, known.issuperset(renderer.gpu.programs.compiled.values))
+
+
+def picture(renderer: Renderer, asked: Asked) -> Shown:
+    """The picture itself."""
+    scene = asked.drawn
+    # timing takes no time, but draws shadow maps again that a moving picture could keep
+    timed = not asked.moving or not any(light.shadows for light in lights_of(scene))
+    rendering = renderer.render(scene, timed, asked.forced)
+    drawn = time.perf_counter()
+    image, kind = encoded(rendering, asked.moving)
+    warnings = rendering.notes if asked.moving else rendering.warnings
+    gpu_ms = {entry["name"]: entry["gpu_ms"] for entry in rendering.passes}
+    return Shown(image, kind, rendering.plan, rendering.mesh, gpu_ms, warnings, samples(scene), drawn)
+
+
+def view(renderer: Renderer, asked: Asked) -> Shown:
+    """An intermediate of the picture."""
+    from fakesss.tuner.looks import DRAWINGS, ONE_SAMPLE, look  # loads matplotlib, which pictures never need
+
+    scene = asked.drawn
+    plan, mesh = renderer.plan(scene, asked.forced)
+    pixels, note, legend = look(scene, asked.view)
+    drawn = time.perf_counter()
+    image, kind = (jpeg(pixels), "image/jpeg") if asked.moving else (encode_png8(pixels), "image/png")
+    count = scene.size[0] * scene.size[1] if asked.view in ONE_SAMPLE else samples(scene)
+    has_camera = asked.view not in DRAWINGS
+    return Shown(image, kind, plan, mesh, {}, mesh.repairs, count, drawn, note, legend, has_camera)
 
 
 def samples(scene: Scene) -> int:

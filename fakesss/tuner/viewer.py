@@ -118,7 +118,7 @@ class Viewer:
             log.exception("drawing failed")
             self.say("error", "This could not be drawn, a fault of the program; its terminal tells more.", wish.number)
             return None
-        if found.drawn:
+        if found.drawn and found.drawn.is_usual:
             self.pace.note(wish.moving, found.drawn.samples, found.drawn.header["times"]["draw"])
         if found.drawn and not found.missing:
             self.last = scene

@@ -27,6 +27,7 @@ from fakesss.renderer import render_file
 from fakesss.scene import Scene
 from fakesss.tuner import asking, guards
 from fakesss.tuner.looks import LOOKS
+from fakesss.tuner.uploads import MOST_BYTES
 
 pytestmark = pytest.mark.gl
 BASE = Scene(object="sphere:1000", size=(64, 48), material={"backlight": 0.9})  # type: ignore[arg-type]
@@ -185,9 +186,10 @@ def test_what_is_too_large_is_refused_and_leaves_nothing(
     http: httpx.Client, folder: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, announced: bool
 ) -> None:
     """Also where a body is longer than it said, or did not say how long it is."""
+    route = next(route for route in asking.router.routes if route.path == "/object")  # type: ignore[attr-defined]
+    assert route.max_body_size == guards.LIMITS["object"] == MOST_BYTES  # type: ignore[attr-defined]
     monkeypatch.setenv("FAKESSS_CACHE", str(tmp_path))
     monkeypatch.setitem(guards.LIMITS, "object", 1 << 20)
-    route = next(route for route in asking.router.routes if route.path == "/object")  # type: ignore[attr-defined]
     monkeypatch.setattr(route, "max_body_size", 1 << 20)
     large = b"v 0 0 0\n" * (1 << 18)
     with tuned(BASE, folder) as url:

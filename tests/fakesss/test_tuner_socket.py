@@ -92,6 +92,17 @@ def test_a_moving_frame_is_nearly_the_still_one(url: str) -> None:
     assert np.abs(one - other).mean() < 6
 
 
+def test_the_first_picture_does_not_slow_the_first_drag(tuner: Tuner, url: str) -> None:
+    """It compiled shaders, which takes as long as ten pictures."""
+    asyncio.run(tuner.studio.read_shaders_again())
+    with tab(url) as viewer:
+        viewer.finished()
+        (one,) = tuner.viewers
+        assert one.pace.still is None
+        viewer.finished()
+        assert one.pace.still is not None
+
+
 def test_a_view_has_a_note(url: str) -> None:
     with tab(url) as viewer:
         frame = viewer.finished({}, view="thickness")
