@@ -11,11 +11,14 @@ WORTH = 0.8  # a smaller picture must take no more than this share of the time, 
 class Pace:
     """Which scale to draw at, from how long the last moving and the last still picture took.
 
-    Time is taken to be a + b * samples: the vertices cost the same at every size.
+    Time is taken to be a + b * samples: the vertices cost the same at every size. Another scale is taken when two
+    pictures in a row ask for it: one that something held up is no reason.
     """
 
     still: tuple[int, float] | None = None  # samples, ms
     moving: tuple[int, float] | None = None
+    chosen: int = 1
+    asked: int = 1  # the scale that the last picture asked for
 
     def note(self, moving: bool, samples: int, ms: float) -> None:
         """A picture was drawn."""
@@ -25,7 +28,13 @@ class Pace:
             self.still = samples, ms
 
     def scale(self, samples: int) -> int:
-        """The scale for a picture that has `samples` at full size, one a pixel."""
+        """The scale for the next picture, which has `samples` at full size, one a pixel."""
+        best = self.best(samples)
+        self.chosen, self.asked = best if best == self.asked else self.chosen, best
+        return self.chosen
+
+    def best(self, samples: int) -> int:
+        """The largest picture that keeps up, or where none does, the smallest that is worth it."""
         fixed, each = self.model()
         chosen = SCALES[0]
         for scale in SCALES[1:]:

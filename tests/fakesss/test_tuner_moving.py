@@ -54,4 +54,14 @@ def test_a_still_picture_as_small_as_a_moving_one() -> None:
         pace.note(True, FULL, 40)
         assert pace.scale(FULL) == 1
         pace.note(True, FULL, 400)
-        assert pace.scale(FULL) > 1
+        assert pace.best(FULL) > 1
+
+
+def test_one_picture_that_was_held_up_changes_nothing() -> None:
+    pace = Pace()
+    assert drawn(pace, 5, 20)[-1] == 1
+    scales = []
+    for ms in (25, 300, 25, 25, 300, 300, 300):
+        pace.note(True, FULL, ms)
+        scales.append(pace.scale(FULL))
+    assert scales[:5] == [1] * 5 and scales[-1] > 1
