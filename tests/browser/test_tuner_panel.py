@@ -379,6 +379,9 @@ def test_a_quality_shows_what_it_sets_and_gives_way(panel: Panel) -> None:
     row.locator("select").select_option("pcf")
     panel.wait_for_changes({"quality": "interactive", "shadow.filter": "pcf"})
     expect(row.locator(".given")).to_have_text("")
+    row.get_by_role("button", name="Reset filter").click()
+    panel.wait_for_changes({"quality": "interactive"})
+    assert row.locator("select").input_value() == f'"{expected.shadow.filter}"'
     panel.tab("shader")
     panel.control("quality").get_by_role("button", name="Reset preset").click()
     expect(given).to_have_text("")
@@ -467,7 +470,8 @@ def drop(page: Page, name: str, text: str) -> None:
         target.dispatchEvent(new DragEvent(kind, { dataTransfer, bubbles: true, cancelable: true }));
       }
       if (document.getElementById("drop").hidden) throw new Error("nothing says that a file can be dropped");
-      target.dispatchEvent(new DragEvent("drop", { dataTransfer, bubbles: true, cancelable: true }));
+      const isLeft = target.dispatchEvent(new DragEvent("drop", { dataTransfer, bubbles: true, cancelable: true }));
+      if (isLeft) throw new Error("the browser would leave the page for the file");
     }""",
         [name, text],
     )

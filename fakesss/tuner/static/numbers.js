@@ -32,8 +32,7 @@ export class Scale {
   // So many key presses on from `value`; no further than the field accepts.
   stepped(value, steps) {
     const ratio = (this.high / this.low) ** (1 / LOG_STEPS);
-    let to = this.isLog ? Math.max(value, this.low) * ratio ** steps : value + steps * this.step;
-    if (this.isWhole && Math.abs(to - value) < 1) to = value + Math.sign(steps) * (this.multiple ?? 1);
+    const to = this.isLog ? Math.max(value, this.low) * ratio ** steps : value + steps * this.step;
     return this.within(this.rounded(to));
   }
 
