@@ -12,8 +12,8 @@ export function start({ settings }) {
   undo.addEventListener("click", () => settings.undo());
   redo.addEventListener("click", () => settings.redo());
   addEventListener("keydown", (event) => {
-    const key = event.key.toLowerCase();
-    if (!(event.ctrlKey || event.metaKey) || event.altKey || !"zy".includes(key) || isTyping(event)) return;
+    const key = event.key?.toLowerCase(); // what a browser fills in by itself has none
+    if (!(event.ctrlKey || event.metaKey) || event.altKey || !["z", "y"].includes(key) || isTyping(event)) return;
     event.preventDefault();
     if (key === "y" || event.shiftKey) settings.redo();
     else settings.undo();

@@ -11,7 +11,7 @@ export function start(context) {
   return new Overlay(context);
 }
 
-export class Overlay {
+class Overlay {
   #canvas = document.getElementById("overlay");
   #drawing = this.#canvas.getContext("2d");
   #header = null;

@@ -15,7 +15,7 @@ export class Peek {
     Object.assign(this, { stage, say, pictures, button, found });
     button.setAttribute("aria-pressed", false);
     const until = { signal: this.leave.signal };
-    button.addEventListener("pointerdown", (event) => event.button === 0 && this.#press(), until);
+    button.addEventListener("pointerdown", (event) => event.button === 0 && this.#press(event), until);
     button.addEventListener("pointercancel", () => this.#end(), until);
     button.addEventListener("click", () => this.#click(), until);
     stage.addEventListener("live", () => this.#tell(false), until);
@@ -23,7 +23,7 @@ export class Peek {
   }
 
   #listen(key, until) {
-    const isMine = (event) => event.key.toLowerCase() === key && !isTyping(event);
+    const isMine = (event) => event.key?.toLowerCase() === key && !isTyping(event);
     const isPlain = (event) => !event.repeat && !event.ctrlKey && !event.metaKey && !event.altKey;
     const isBegun = (event) => letters.checked && isPlain(event) && isMine(event);
     addEventListener("keydown", (event) => isBegun(event) && this.#begin(), until);
@@ -31,7 +31,8 @@ export class Peek {
     addEventListener("blur", () => this.#end(), until);
   }
 
-  #press() {
+  #press({ pointerId }) {
+    this.button.setPointerCapture(pointerId); // it may be let go elsewhere
     this.#pressedAt = this.#isOn ? null : performance.now();
     if (!this.#isOn) this.#begin();
   }

@@ -88,7 +88,6 @@ export class Pins extends EventTarget {
       const told = words.filter(Boolean).join(": ") || "as the live picture";
       entry.querySelector(".number").textContent = index + 1;
       entry.querySelector(".values").textContent = entry.querySelector(".values").title = told;
-      entry.querySelector("img").alt = "";
       entry.querySelector(".restore").setAttribute("aria-label", `Bring back ${name}: ${told}`);
       entry.querySelector(".remove").setAttribute("aria-label", `Remove ${name}`);
       entry.querySelector(".look").setAttribute("aria-label", `Look at ${name}`);

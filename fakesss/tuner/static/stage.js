@@ -12,7 +12,7 @@ export function start(context) {
   return new Stage(context);
 }
 
-export class Stage extends EventTarget {
+class Stage extends EventTarget {
   place = document.getElementById("place"); // what is dragged in, and has the focus for the keys
   canvas = document.getElementById("picture");
   #drawing = this.canvas.getContext("2d");
