@@ -311,6 +311,7 @@ def test_lights_are_added_picked_tuned_and_removed(panel: Panel) -> None:
     assert panel.changes["lights"][0]["kind"] == "spot"
     assert panel.changes["lights"][0]["ambient"] == [0, 0, 0]
     assert set(panel.changes) == {"lights"}
+    expect(panel.slider("light.cutoff")).to_have_accessible_description(re.compile(r"Scene field lights\.0\.cutoff\."))
     page.get_by_role("radio", name="Main light").check(force=True)
     expect(panel.control("light.kind").locator("select")).to_have_value('"directional"')
     expect(remove).to_be_disabled()

@@ -16,7 +16,8 @@ class Control {
     this.needs = JSON.parse(this.data.needs ?? "[]");
     this.inputs = [...element.querySelectorAll("input, select")];
     this.section = element.closest("[role=tabpanel]");
-    for (const part of ["problem", "reset", "given", "otherwise"]) this[`${part}Part`] = element.querySelector(`.${part}`);
+    for (const part of ["problem", "reset", "given", "otherwise", "tip"]) this[`${part}Part`] = element.querySelector(`.${part}`);
+    this.tip = this.tipPart.textContent;
     this.build();
     this.resetPart.addEventListener("click", () => this.reset());
     for (const target of element.querySelectorAll(".label, input[type=range]")) {
@@ -89,6 +90,7 @@ class Control {
     this.element.classList.toggle("changed", isChanged);
     this.resetPart.hidden = !isChanged;
     this.givenPart.textContent = this.settings.filledBy(this.path);
+    this.tipPart.textContent = this.tip.replace(this.data.path, this.path);
   }
 
   disable(why) {
