@@ -14,7 +14,7 @@ from fakesss.tuner.serve import tuned
 
 HERE = Path(__file__).parent
 PROBE = HERE.parents[1] / "benchmarks" / "tuner_probe.js"
-WINDOW = {"width": 1440, "height": 900}
+WINDOW = {"width": 1440, "height": 940}
 CHANGES = {"thickness_exponent": "12", "backlight": "0.8", "diffuse_weight": "0"}  # each pinned with those before it
 AT_REST = """() => { const last = window.probe.frames.at(-1);
   return last && !last.moving && !last.stand_in && last.shown && last.number === window.probe.sent.at(-1).number }"""
