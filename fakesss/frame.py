@@ -171,6 +171,7 @@ class Run:
         target = self.gpu.pool.framebuffer(colours, inputs[node.mask] if node.mask else depth)
         with self._drawing(node, target):
             node.draw(Frame(self.gpu, node, inputs, target))
+        self.gpu.after_pass()
 
     @contextmanager
     def _drawing(self, node: Pass, target: Any) -> Iterator[None]:

@@ -10,7 +10,7 @@ forked gets its own. Use the "spawn" start method for worker processes, since Me
 import os
 import sys
 import threading
-from collections.abc import Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping
 from contextlib import contextmanager
 from dataclasses import dataclass, field
 from typing import Any
@@ -31,6 +31,10 @@ UPLOADS_KEPT = 16  # buffers: a few meshes, so that a sweep uploads nothing twic
 DRAWN_KEPT = 1  # passes' outputs that the next picture may use again: large, so only the last
 
 
+def nothing() -> None:
+    """What is done after a pass, unless somebody has something to do then."""
+
+
 @dataclass
 class Gpu:
     """A context with its compiled programs, pooled textures and recently uploaded buffers."""
@@ -41,6 +45,7 @@ class Gpu:
     uploads: Recent[Any] = field(init=False)
     timers: dict[str, Any] = field(default_factory=dict)
     drawn: Recent[Any] = field(init=False)  # textures of passes with a key, {name: (spec, texture)}
+    after_pass: Callable[[], object] = nothing
 
     def __post_init__(self) -> None:
         self.programs = Programs(self.context)

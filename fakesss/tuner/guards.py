@@ -4,6 +4,8 @@ Plain ASGI, around everything. A page of another site cannot read the secret; if
 post nor open a WebSocket (Origin), nor reach the tuner under a name of its own that points here (Host).
 """
 
+import asyncio
+import contextlib
 import hmac
 import ipaddress
 import re
@@ -57,7 +59,12 @@ class Guards:
             await RedirectResponse(f"/{first}/")(scope, receive, send)  # addresses in the page are relative to it
         else:
             inside = {**scope, "path": f"/{path}", "raw_path": f"/{path}".encode()}
-            await self.app(inside, receive, send)
+            try:
+                await self.app(inside, receive, send)
+            except asyncio.CancelledError:
+                if scope["type"] == "http":
+                    with contextlib.suppress(RuntimeError):  # part of an answer was sent already
+                        await refused(503, "The tuner was stopped.")(scope, receive, send)
 
     def refusal(self, scope: Scope, headers: Headers, first: str, limit: int) -> Response | None:
         """What is said to who may not come in. `limit`: bytes of a body; who lies about it is stopped inside."""

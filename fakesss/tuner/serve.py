@@ -3,6 +3,7 @@
 import contextlib
 import os
 import secrets
+import socket
 import sys
 import threading
 import time
@@ -42,7 +43,7 @@ def serve(
     with listening(host, port) as listener:
         tuner = Tuner(scene, Path.cwd(), GLSL, write_study, read_object(scene.object))
         token = secrets.token_urlsafe(TOKEN_BYTES)
-        server = uvicorn.Server(configured(Guards(create_app(tuner), token, host)))
+        server = PromptServer(configured(Guards(create_app(tuner), token, host)))
         announce(f"{address_of(listener)}/{token}/")
         try:
             server.run(sockets=[listener])
@@ -80,7 +81,7 @@ def running(tuner: Tuner, port: int = 0, token: str = "") -> Iterator[str]:
     """The same for a tuner that was made already."""
     token = token or secrets.token_urlsafe(TOKEN_BYTES)
     with listening("127.0.0.1", port) as listener:
-        server = uvicorn.Server(configured(Guards(create_app(tuner), token, "127.0.0.1")))
+        server = PromptServer(configured(Guards(create_app(tuner), token, "127.0.0.1")))
         thread = threading.Thread(target=server.run, kwargs={"sockets": [listener]})
         thread.start()
         try:
@@ -91,6 +92,16 @@ def running(tuner: Tuner, port: int = 0, token: str = "") -> Iterator[str]:
             server.should_exit = True
             thread.join()
             tuner.close()
+
+
+class PromptServer(uvicorn.Server):
+    """Waits for nobody at the end: a picture may take longer than somebody who pressed Ctrl-C."""
+
+    async def shutdown(self, sockets: list[socket.socket] | None = None) -> None:
+        """Ends every request and WebSocket."""
+        for task in tuple(self.server_state.tasks):
+            task.cancel()
+        await super().shutdown(sockets)
 
 
 def configured(app: ASGIApp) -> uvicorn.Config:

@@ -1,11 +1,13 @@
 """The one thread that draws: OpenGL contexts belong to a thread, so viewers take turns."""
 
 import asyncio
+import ctypes
 from collections.abc import Callable, Hashable
 from concurrent.futures import ThreadPoolExecutor, wait
 from pathlib import Path
 from typing import Any, TypeVar
 
+from fakesss.gpu import nothing
 from fakesss.recent import Recent
 from fakesss.renderer import Renderer, shared_renderer
 from fakesss.shader_source import GLSL
@@ -52,6 +54,7 @@ class Studio:
         renderer = shared_renderer()
         renderer.bakes = AtHand(BAKES_KEPT)
         renderer.gpu.programs.root = self.glsl
+        renderer.gpu.after_pass = wait_for_drawing()
         return renderer
 
     async def do(self, work: Callable[[Renderer], Result]) -> Result:
@@ -75,6 +78,18 @@ class Studio:
         released = self._thread.submit(self.renderer.gpu.context.release)
         self._thread.shutdown(wait=False)
         return not wait([released], LEAVE_S).not_done
+
+
+def wait_for_drawing() -> Callable[[], object]:
+    """OpenGL's glFinish, called so that other threads go on; moderngl holds Python's lock while it waits for a pass.
+
+    On a software rasteriser passes wait for one another anyway, so it takes no time. Without the library, nothing.
+    """
+    try:
+        finish: Callable[[], object] = ctypes.CDLL("libGL.so.1").glFinish
+    except OSError:
+        return nothing
+    return finish
 
 
 def forget_programs(renderer: Renderer) -> None:

@@ -58,8 +58,8 @@ class Viewer:
             pass
         finally:
             self.tuner.viewers.discard(self)
-            if not self.tuner.viewers:
-                await self.tuner.studio.rest()
+        if not self.tuner.viewers:
+            await self.tuner.studio.rest()
 
     def tell(self, kind: str, **facts: Any) -> None:
         """Send a message that is no frame, without waiting for a slow connection."""

@@ -4,11 +4,13 @@ import io
 import json
 import os
 import signal
+import socket
 import subprocess
 import sys
 from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
+from urllib.parse import urlsplit
 
 import httpx
 import numpy as np
@@ -244,11 +246,17 @@ def test_ctrl_c_ends_the_command_though_it_works(command: "subprocess.Popen[str]
                 viewer.wish()
         assert "65536 rays" in answer.header["stand_in"]
         viewer.message(type="working", what="Occlusion with 65536 rays a vertex", done=False)
-        command.send_signal(signal.SIGINT)
-        _, said = command.communicate(timeout=60)
+        with socket.create_connection(("127.0.0.1", urlsplit(address).port or 0)) as line:
+            head = (f"POST {urlsplit(address).path}picture HTTP/1.1", "Host: localhost", "Content-Length: 2")
+            line.sendall("\r\n".join([*head, "Content-Type: application/json", "", "{}"]).encode())
+            viewer.finished({"occlusion.enabled": False})
+            viewer.finished({"occlusion.enabled": False})
+            command.send_signal(signal.SIGINT)
+            _, said = command.communicate(timeout=60)
+            assert b"503" in line.recv(4096)
     assert command.returncode == 130, said
     assert "ssh -L" in said and "192.0.2.2" in said
-    assert "Traceback" not in said
+    assert "Traceback" not in said and "ERROR" not in said
 
 
 @pytest.mark.parametrize(

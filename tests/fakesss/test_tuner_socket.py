@@ -103,6 +103,16 @@ def test_the_first_picture_does_not_slow_the_first_drag(tuner: Tuner, url: str) 
         assert one.pace.still is not None
 
 
+def test_others_go_on_while_a_pass_is_waited_for(tuner: Tuner, url: str, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Each pass is waited for by a call that leaves Python's lock to the other threads."""
+    waits: list[None] = []
+    monkeypatch.setattr(tuner.studio.renderer.gpu, "after_pass", lambda: waits.append(None))
+    with tab(url) as viewer:
+        header = viewer.finished().header
+    drawn = [entry for entry in header["passes"] if entry["gpu_ms"] is not None]
+    assert len(waits) >= len(drawn) > 2
+
+
 def test_a_view_has_a_note(url: str) -> None:
     with tab(url) as viewer:
         frame = viewer.finished({}, view="thickness")
