@@ -107,11 +107,13 @@ class Tuner:
                 except Unprepared as lack:
                     missing = lack
             making = asyncio.create_task(self.prepare(missing))
-            while not (await asyncio.wait({making}, timeout=LOOK_S))[0]:
-                if not await is_wanted():
-                    making.cancel()
-                    raise Gone
-            await making
+            try:
+                while not (await asyncio.wait({making}, timeout=LOOK_S))[0]:
+                    if not await is_wanted():
+                        raise Gone
+                await making
+            finally:
+                making.cancel()
 
     def close(self) -> bool:
         """Stop; whether everything has come to its end."""

@@ -145,6 +145,25 @@ def test_what_was_taken_back_is_given_up(url: str, held: Bake) -> None:
 
 
 @pytest.mark.gl
+def test_whoever_leaves_while_an_object_is_examined(url: str, monkeypatch: pytest.MonkeyPatch) -> None:
+    """It has been read; whether it is a solid is being found out."""
+    begun, given_up = threading.Event(), threading.Event()
+
+    def examined(mesh: Any) -> bool:
+        begun.set()
+        until(lambda: not is_wanted())
+        given_up.set()
+        raise Unwanted
+
+    with tab(url) as viewer:
+        viewer.finished()
+        monkeypatch.setattr("fakesss.renderer.is_solid", examined)
+        stand_in(viewer, {"object": "torus:1000"})
+        assert begun.wait(60)
+    assert given_up.wait(60)
+
+
+@pytest.mark.gl
 def test_a_picture_that_nobody_fetches_any_more(url: str, held: Bake, monkeypatch: pytest.MonkeyPatch) -> None:
     """The browser leaves the page of a grid whose pictures are being prepared."""
     monkeypatch.setattr(state, "LOOK_S", 0.01)
