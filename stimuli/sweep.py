@@ -18,6 +18,7 @@ from stimuli.design import stimuli_of
 from stimuli.study import Study, check_levels_are_values
 
 NAME = "study.toml"
+MOST_PICTURES = 10_000  # every one of them is made up in memory, so that what is wrong is said before they are drawn
 HASH = re.compile(r"^[0-9a-f]{64}\.")  # what the name of a file that was brought to the tuner is: it says nothing
 
 
@@ -31,6 +32,7 @@ def write_sweep(scene: Scene, title: str, folder: Path, factors: Sequence[Mappin
     if path.exists():
         raise BadInput(f"{path}: exists already; choose another folder or edit it")
     check_words(title, factors)
+    check_number(factors)
     meshes = names_beside([scene.object, *(level for factor in factors for level in objects(factor))])
     text = study_text(scene, title, factors, meshes)
     stimuli_of(Study.of(tomllib.loads(text), NAME))  # whatever is wrong is said here
@@ -52,6 +54,18 @@ def check_words(title: str, factors: Sequence[Mapping[str, Any]]) -> None:
     check_levels_are_values({"factor": list(factors)}, NAME)
 
 
+def check_number(factors: Sequence[Mapping[str, Any]]) -> None:
+    """`BadInput` for more combinations than anybody draws; four factors of 100 levels are 10^8."""
+    pictures = pictures_of(factors)
+    if pictures > MOST_PICTURES:
+        raise BadInput(f"{NAME}: {pictures} pictures: must be <= {MOST_PICTURES}; vary less, or in fewer steps")
+
+
+def pictures_of(factors: Sequence[Mapping[str, Any]]) -> int:
+    """How many combinations of levels there are."""
+    return prod(len(factor["levels"]) for factor in factors)
+
+
 def study_text(scene: Scene, title: str, factors: Sequence[Mapping[str, Any]], meshes: Mapping[str, str]) -> str:
     """The text of study.toml; `meshes` gives each mesh file's name beside it."""
     base = scene.model_copy(update={"object": meshes.get(scene.object, scene.object)})
@@ -59,7 +73,7 @@ def study_text(scene: Scene, title: str, factors: Sequence[Mapping[str, Any]], m
     return template.substitute(
         title=title,
         quoted_title=toml_value(title),
-        pictures=prod(len(factor["levels"]) for factor in factors),
+        pictures=pictures_of(factors),
         scene=scene_tables(base, "scene"),
         factors="\n".join(factor_text(factor, scene, meshes) for factor in factors),
     )

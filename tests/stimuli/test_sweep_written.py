@@ -53,6 +53,18 @@ def test_the_study_builds_with_every_table_checked(tmp_path: Path) -> None:
     assert [entry["factors"] for entry in manifest["stimuli"]][1] == {"kernel": "3x3", "blur": False}
 
 
+def test_more_pictures_than_anybody_draws_are_refused_before_they_are_made_up(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Four factors of a hundred levels took all memory, and could not be stopped."""
+    monkeypatch.setattr("stimuli.sweep.stimuli_of", lambda study: pytest.fail("they were made up"))
+    paths = ("material.thickness_exponent", "camera.azimuth", "light.azimuth", "light.elevation")
+    factors = [{"name": path, "path": path, "levels": list(range(1, 101))} for path in paths]
+    with pytest.raises(BadInput, match=r"100000000 pictures: must be <= 10000; vary less"):
+        write_sweep(SCENE, "a", tmp_path / "new", factors)
+    assert not (tmp_path / "new").exists()
+
+
 def test_a_mesh_is_copied_beside_the_study_under_its_own_name(tmp_path: Path) -> None:
     for folder in ("one", "two"):
         (tmp_path / folder).mkdir()
