@@ -233,13 +233,17 @@ def test_what_cannot_be_or_cannot_be_told_apart_is_said(page: Page, talk: Talk, 
 
 
 def test_the_value_now_is_marked_and_can_be_added(page: Page, talk: Talk) -> None:
+    asked: list[str] = []
+    page.on("request", lambda request: asked.append(request.url))
     vary(page, "across", "material.thickness_exponent", "10, 40")
+    page.locator("#study-title").press("Enter")
     now = factor(page, "across").locator(".now")
     expect(now).to_contain_text("Now 25, which is none of them.")
     now.get_by_role("button").click()
     expect(factor(page, "across").locator(".levels")).to_have_value("10, 25, 40")
     expect(now).to_have_text("Now 25. Add it", use_inner_text=False)
     expect(now.get_by_role("button")).to_be_hidden()
+    assert not [url for url in asked if url.endswith("/study")], "written by Enter in a field"
 
 
 LEVELS = """async ([from, to, count, isRatios, data]) => {

@@ -16,7 +16,7 @@ export function startStudy(sweep, { settings, say }) {
   });
   folder.addEventListener("input", () => (isOwnFolder = folder.value !== ""));
   sweep.addEventListener("change", suggest);
-  document.getElementById("sweep").addEventListener("submit", write);
+  document.getElementById("write-study").addEventListener("click", write);
 
   function suggest() {
     const { factors } = sweep;
@@ -27,9 +27,7 @@ export function startStudy(sweep, { settings, say }) {
     if (!isOwnFolder) folder.value = plain(title.value);
   }
 
-  async function write(event) {
-    event.preventDefault();
-    if (event.submitter?.id !== "write-study") return;
+  async function write() {
     const factors = sweep.factors.map(({ name, path, levels }) => ({ name, path, levels }));
     const asked = { settings: settings.current, title: title.value, folder: folder.value, factors };
     try {
