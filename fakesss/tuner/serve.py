@@ -24,7 +24,7 @@ from fakesss.tuner.guards import Guards
 from fakesss.tuner.state import Tuner, WriteStudy
 
 TOKEN_BYTES = 16
-FINISH_S = 0.3  # how long requests under way are waited for at the end
+FINISH_S = 0.3  # how long requests under way are waited for at the end, and then their threads
 MESSAGE_LIMIT = 1 << 20  # bytes of one wish; 32 lights are 16 KB
 INTERRUPTED = 130  # the shell's exit status for Ctrl-C
 
@@ -36,7 +36,8 @@ def serve(
     write_study: WriteStudy,
     announce: Callable[[str], None],
 ) -> None:
-    """Tune `scene` until interrupted. `announce` is told the address, with its secret, as soon as it answers.
+    """Tune `scene` until interrupted, which ends the program. `announce` is told the address, with its secret, as soon
+    as it answers.
 
     Raises `BadInput` if the port is taken, there is no OpenGL, or no such object.
     """
@@ -47,11 +48,24 @@ def serve(
         announce(f"{address_of(listener)}/{token}/")
         try:
             server.run(sockets=[listener])
+        except KeyboardInterrupt:
+            print("The tuner is stopped.", file=sys.stderr)
+            raise SystemExit(INTERRUPTED) from None
         finally:
-            if not tuner.close():
+            tuner.close()
+            if somebody_works():
                 sys.stdout.flush()
                 sys.stderr.flush()
-                os._exit(INTERRUPTED)  # a picture that takes minutes would keep the process for as long
+                os._exit(INTERRUPTED)  # a picture or a post that takes minutes would keep the process for as long
+
+
+def somebody_works() -> bool:
+    """Whether a thread, of those that draw, make things or answer posts, has not come to its end after `FINISH_S`."""
+    end = time.monotonic() + FINISH_S
+    others = [thread for thread in threading.enumerate() if not thread.daemon and thread is not threading.main_thread()]
+    for thread in others:
+        thread.join(max(end - time.monotonic(), 0))
+    return any(thread.is_alive() for thread in others)
 
 
 def read_object(name: str) -> Mesh | None:

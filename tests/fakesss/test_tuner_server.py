@@ -209,7 +209,16 @@ def test_no_such_page(http: httpx.Client, url: str) -> None:
     assert http.get(url + "static/%2e%2e/app.py").status_code == 404
 
 
-COMMAND = [sys.executable, "-m", "fakesss", "tune"]
+LONG = """
+import time, stimuli.sweep
+from fakesss.cli import main
+def written(*arguments):
+    print("writing", flush=True)
+    time.sleep(3600)
+stimuli.sweep.write_sweep = written
+main()
+"""
+COMMAND = [sys.executable, "-c", LONG, "tune"]
 
 
 def with_interrupts() -> None:
@@ -219,7 +228,7 @@ def with_interrupts() -> None:
 
 @pytest.fixture
 def command(tmp_path: Path) -> Iterator["subprocess.Popen[str]"]:
-    """The command, with half a minute of rays to cast before its picture is done."""
+    """The command, with half a minute of rays to cast before its picture is done, and an hour to write a study."""
     environment = {"FAKESSS_CACHE": str(tmp_path / "cache"), "SSH_CONNECTION": "192.0.2.1 50 192.0.2.2 22"}
     arguments = ["sphere:4000", "--size", "32x32", "--port", "0", "--set", "occlusion.rays=65536", "--json"]
     with subprocess.Popen(
@@ -235,6 +244,15 @@ def command(tmp_path: Path) -> Iterator["subprocess.Popen[str]"]:
         process.kill()
 
 
+def posting(address: str, body: dict[str, Any]) -> socket.socket:
+    """The connection on which a post's answer will come."""
+    text = json.dumps(body)
+    line = socket.create_connection(("127.0.0.1", urlsplit(address).port or 0))
+    head = (f"POST {urlsplit(address).path} HTTP/1.1", "Host: localhost", f"Content-Length: {len(text)}")
+    line.sendall("\r\n".join([*head, "Content-Type: application/json", "", text]).encode())
+    return line
+
+
 def test_ctrl_c_ends_the_command_though_it_works(command: "subprocess.Popen[str]") -> None:
     assert command.stdout is not None
     lines = [command.stdout.readline() for _ in range(4)]
@@ -246,15 +264,16 @@ def test_ctrl_c_ends_the_command_though_it_works(command: "subprocess.Popen[str]
                 viewer.wish()
         assert "65536 rays" in answer.header["stand_in"]
         viewer.message(type="working", what="Occlusion with 65536 rays a vertex", done=False)
-        with socket.create_connection(("127.0.0.1", urlsplit(address).port or 0)) as line:
-            head = (f"POST {urlsplit(address).path}picture HTTP/1.1", "Host: localhost", "Content-Length: 2")
-            line.sendall("\r\n".join([*head, "Content-Type: application/json", "", "{}"]).encode())
+        study = {"title": "a", "folder": "a", "factors": [{"name": "a", "path": "light.azimuth", "levels": [0, 90]}]}
+        with posting(address + "study", study), posting(address + "picture", {}) as line:
+            assert command.stdout.readline() == "writing\n"
             viewer.finished({"occlusion.enabled": False})
             viewer.finished({"occlusion.enabled": False})
             command.send_signal(signal.SIGINT)
             _, said = command.communicate(timeout=60)
             assert b"503" in line.recv(4096)
     assert command.returncode == 130, said
+    assert said.endswith("The tuner is stopped.\n")  # no word of the same command, which has another address
     assert "ssh -L" in said and "192.0.2.2" in said
     assert "Traceback" not in said and "ERROR" not in said
 
