@@ -41,7 +41,7 @@ export function start({ settings, stage, say }) {
   remove.addEventListener("click", () => {
     const { index } = picked;
     picked.pick(index - 1);
-    settings.set("lights", settings.value("lights").toSpliced(index - 1, 1));
+    settings.removeLight(index - 1);
     say("info", `Light ${index + 1} is removed; undo brings it back.`);
     chips.focus(index - 1);
   });

@@ -11,6 +11,7 @@ export class Settings extends EventTarget {
   #current = { changes: {}, effects: {} };
   #before = []; // what undo goes back to
   #after = [];
+  #origins = new WeakMap(); // of such settings, if a further light was removed: the places of the others at the start
   #gestures = new Map(); // those that go on: name -> {lasts, isStep: whether undo has its step}
 
   // `start` is what the server says at /start.json.
@@ -51,14 +52,17 @@ export class Settings extends EventTarget {
     return structuredClone(walk(field in changes ? changes[field] : this.#untouched(changes, field), within));
   }
 
-  // The value in the scene that the tuner was started with.
+  // The value in the scene that the tuner was started with, there of the light that the path means now; undefined for
+  // one that was not there.
   original(path) {
-    return structuredClone(walk(this.start.base, path.split(".")));
+    const [field, within] = parts(path);
+    const whole = within.length ? this.#places.map((place) => this.start.base[field][place]) : this.start.base;
+    return structuredClone(walk(whole, within.length ? within : field.split(".")));
   }
 
   isChanged(path) {
     const [field, within] = parts(path);
-    return !isSame(this.value(path), walk(this.#untouched(this.#current.changes, field), within));
+    return !isSame(this.value(path), within.length ? this.original(path) : this.#untouched(this.#current.changes, field));
   }
 
   // The quality that the field has its value from, which nobody set; "" if it has it from the scene.
@@ -101,9 +105,20 @@ export class Settings extends EventTarget {
     });
   }
 
+  // The others stay what they were at the start, each in its new place.
+  removeLight(index) {
+    this.#change(null, (next) => {
+      this.#origins.set(next, this.#places.toSpliced(index, 1));
+      this.#put(next, "lights", this.valueIn(next, "lights").toSpliced(index, 1));
+    });
+  }
+
   // All of them at once, as a link, a pin or a cell of a sweep has them.
   replace(settings) {
-    this.#change(null, (next) => Object.assign(next, structuredClone(settings)));
+    this.#change(null, (next) => {
+      Object.assign(next, structuredClone(settings));
+      if (!isSame(this.valueIn(next, "lights"), this.value("lights"))) this.#origins.delete(next);
+    });
   }
 
   // A gesture that goes on beside all others (an animation) until it is settled by name; undo ends it too.
@@ -131,6 +146,13 @@ export class Settings extends EventTarget {
     this.#step(this.#after, this.#before);
   }
 
+  // That the further lights had at the start. Which ones are missing from a list that came from elsewhere nobody knows.
+  get #places() {
+    const { lights } = this.start.base;
+    const isShort = this.value("lights").length < lights.length;
+    return this.#origins.get(this.#current) ?? (isShort ? [] : [...lights.keys()]);
+  }
+
   #put(next, path, value) {
     const [field, within] = parts(path);
     if (within.length) {
@@ -156,7 +178,9 @@ export class Settings extends EventTarget {
 
   #change(gesture, change) {
     const next = this.current;
+    this.#origins.set(next, this.#origins.get(this.#current));
     change(next);
+    if (!("lights" in next.changes)) this.#origins.delete(next);
     if (isSame(next, this.#current)) return;
     if (!this.#gestures.has(gesture)) this.#endPassing();
     if (gesture !== null && !this.#gestures.has(gesture)) this.#gestures.set(gesture, { lasts: false, isStep: false });
