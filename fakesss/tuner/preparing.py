@@ -30,18 +30,20 @@ def attempt(renderer: Renderer, asked: Asked, last: Scene | None) -> Attempt:
 
     `last` is the last scene of which everything was at hand.
     """
-    scene, missing, sentence = asked.scene, None, ""
+    scene, missing = asked.scene, None
+    said: dict[str, str] = {}  # what stands in for each kind of thing; a later way of one replaces the earlier
     ways: dict[str, Iterator[tuple[Changes, str]]] = {}
     while True:
         try:
-            return Attempt(draw(renderer, replace(asked, scene=scene)), missing, sentence)
+            drawn = draw(renderer, replace(asked, scene=scene))
+            return Attempt(drawn, missing, " ".join(dict.fromkeys(said.values())))
         except Unprepared as lack:
-            missing = missing or lack
-            changes, words = next(ways.setdefault(lack.kind, stand_ins(lack.kind, asked.scene, last)), ({}, ""))
+            missing, kind = missing or lack, lack.kind
+        changes, words = next(ways.setdefault(kind, stand_ins(kind, asked.scene, last)), ({}, ""))
         if not changes:
             return Attempt(None, missing)
         scene = scene.replace(changes, "tuner")
-        sentence = sentence or f"{in_words(missing.kind, asked.scene)} is not made yet; {words}."
+        said[kind] = f"{in_words(kind, asked.scene)} is not made yet; {words}."
 
 
 def in_words(kind: str, scene: Scene) -> str:
@@ -58,9 +60,11 @@ def in_words(kind: str, scene: Scene) -> str:
 def stand_ins(kind: str, scene: Scene, last: Scene | None) -> Iterator[tuple[Changes, str]]:
     """Changes of `scene` by which it may do without what is missing, the nearest to it first, each in words."""
     if kind == "occlusion":
-        if last and last.occlusion != scene.occlusion:
-            fields = {"occlusion.rays": last.occlusion.rays, "occlusion.sampling": last.occlusion.sampling}
-            yield fields, f"drawn with {last.occlusion.rays}"
+        if last:
+            rays, sampling = last.occlusion.rays, last.occlusion.sampling
+            words = f"{rays}" if rays != scene.occlusion.rays else f"{sampling} sampling"
+            if (rays, sampling) != (scene.occlusion.rays, scene.occlusion.sampling):
+                yield {"occlusion.rays": rays, "occlusion.sampling": sampling}, f"drawn with {words}"
         yield {"occlusion.enabled": False}, "drawn without"
     elif kind == "local_thickness":
         if last and last.material.thickness == "local" and last.layers != scene.layers:

@@ -3,11 +3,15 @@
 import asyncio
 import gc
 import threading
+from pathlib import Path
 from typing import Any
 
+import pytest
 from waiting import until
 
-from fakesss.patience import Unwanted, is_wanted
+from fakesss import occlusion
+from fakesss.patience import Unwanted, is_wanted, while_wanted
+from fakesss.shapes import load_object
 from fakesss.tuner.preparing import Preparing
 from fakesss.tuner.studio import Unprepared
 
@@ -36,3 +40,12 @@ def test_what_is_given_up_halfway_is_not_complained_of() -> None:
 
     asyncio.run(given_up())
     assert complaints == []
+
+
+def test_rays_nobody_waits_for_are_not_cast(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setenv("FAKESSS_CACHE", str(tmp_path))
+    mesh = load_object("sphere:1000")
+    with while_wanted(lambda: False), pytest.raises(Unwanted):
+        occlusion.bake_occlusion(mesh, 64)
+    assert not occlusion.bake_occlusion(mesh, 64).cached
+    assert is_wanted()

@@ -12,7 +12,7 @@ from tuner_server import Frame, Tab, tab, tuned
 from waiting import until
 
 from fakesss import occlusion
-from fakesss.patience import Unwanted, is_wanted, while_wanted
+from fakesss.patience import Unwanted, is_wanted
 from fakesss.problem import BadInput
 from fakesss.renderer import render_file
 from fakesss.scene import Scene
@@ -100,6 +100,33 @@ def test_the_last_rays_stand_in_for_the_next(url: str, held: Bake, tmp_path: Pat
         held.go.set()
         viewer.message(type="again")
         assert stand_in(viewer, changes).image == bytes_of(BASE.replace(changes), tmp_path)
+
+
+@pytest.mark.gl
+def test_the_sentence_is_of_what_is_drawn_at_last(url: str, held: Bake) -> None:
+    """A way that is tried first, and lacks something too, is not the one that was taken."""
+    held.go.set()
+    with tab(url) as viewer:
+        viewer.finished({"occlusion.enabled": False, "occlusion.rays": 40})
+        held.go.clear()
+        for changes in ({"occlusion.rays": 40}, {"occlusion.rays": 48}):
+            header = stand_in(viewer, changes).header
+            words = f"Occlusion with {changes['occlusion.rays']} rays a vertex is not made yet; drawn without."
+            assert (header["stand_in"], header["reasons"]["occlusion"]) == (words, "occlusion.enabled is false")
+
+
+@pytest.mark.gl
+def test_everything_that_stands_in_is_named(url: str, monkeypatch: pytest.MonkeyPatch) -> None:
+    go = threading.Event()
+    with tab(url) as viewer:
+        viewer.finished({"occlusion.enabled": False})
+        monkeypatch.setattr("fakesss.passes.mesh.load_object", lambda name: go.wait(60) and load_object(name))
+        said = stand_in(viewer, {"object": "torus:1000"}).header["stand_in"]
+        go.set()
+    assert said == (
+        'The object "torus:1000" is not made yet; "sphere:1000" is drawn meanwhile. '
+        "Occlusion with 16 rays a vertex is not made yet; drawn without."
+    )
 
 
 @pytest.mark.gl
@@ -256,15 +283,6 @@ def test_views_wait_too(url: str, held: Bake, view: str) -> None:
         assert viewer.finished({"occlusion.enabled": False}, view=view).header["view"] == view
 
 
-def test_rays_nobody_waits_for_are_not_cast(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setenv("FAKESSS_CACHE", str(tmp_path))
-    mesh = load_object("sphere:1000")
-    with while_wanted(lambda: False), pytest.raises(Unwanted):
-        occlusion.bake_occlusion(mesh, 64)
-    assert not occlusion.bake_occlusion(mesh, 64).cached
-    assert is_wanted()
-
-
 def kinds(kind: str, scene: Scene, last: Scene | None) -> list[Any]:
     return [dict(changes) for changes, _ in stand_ins(kind, scene, last)]
 
@@ -273,5 +291,6 @@ def test_the_nearest_stand_in_comes_first() -> None:
     last = BASE.replace({"occlusion.rays": 64, "object": "torus:1000"})
     assert kinds("occlusion", BASE, None) == [{"occlusion.enabled": False}]
     assert kinds("occlusion", BASE, last)[0]["occlusion.rays"] == 64
+    assert kinds("occlusion", BASE, BASE.replace({"occlusion.enabled": False})) == [{"occlusion.enabled": False}]
     assert kinds("mesh", BASE, last) == [{"object": "torus:1000"}] and kinds("mesh", BASE, None) == []
     assert kinds("coarse_mesh", BASE.replace({"layers.faces": 100}), last) == [{"layers.faces": None}]
