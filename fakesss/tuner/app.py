@@ -79,6 +79,7 @@ def start(tuner: AtTuner) -> JSONResponse:
         {
             "base": tuner.base.model_dump(mode="json"),
             "objects": names(),
+            "brought": tuner.uploads.names,
             "media": {name: asdict(medium) for name, medium in MEDIA.items()},
             "views": dict(LOOKS),
             "effects": list(EFFECTS),

@@ -86,6 +86,7 @@ async def load_object(request: Request, tuner: AtTuner, name: Annotated[str, Que
     except BadInput as error:
         path.unlink(missing_ok=True)
         raise BadInput(str(error).replace(str(path), f'"{name}"')) from None
+    tuner.uploads.names[str(path)] = name
     return JSONResponse(
         {"object": str(path), "faces": len(mesh.faces), "vertices": len(mesh.positions), "notes": mesh.repairs}
     )

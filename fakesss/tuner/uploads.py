@@ -22,6 +22,7 @@ class Uploads:
 
     def __init__(self) -> None:
         self.folder = cache.folder().absolute() / "objects"
+        self.names: dict[str, str] = {}  # by path, as they were called where they come from
 
     def has(self, name: str) -> bool:
         """Whether a scene's `object` is a file that was brought."""

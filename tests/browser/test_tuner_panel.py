@@ -481,6 +481,18 @@ def test_objects_by_name_and_by_faces(panel: Panel) -> None:
     faces.fill("12")
     faces.press("Enter")
     expect(page.locator("#object-problem")).to_have_text("faces must be at least 1000.")
+    page.locator("#object").select_option("sphere")  # with as many faces as it had
+    panel.wait_for_changes({})
+    expect(faces).to_have_value("1000")
+    expect(page.locator("#object-problem")).to_be_hidden()
+    page.locator("#object").select_option("torus")
+    faces.fill("many")
+    faces.press("Enter")
+    expect(page.locator("#object-problem")).to_have_text('"many" is not a number.')
+    page.locator("#undo").click()
+    expect(faces).to_have_value("1000")
+    expect(page.locator("#object-problem")).to_be_hidden()
+    page.locator("#redo").click()
     faces.fill("2000")
     faces.press("Enter")
     panel.wait_for_changes({"object": "torus:2000"})
@@ -495,6 +507,20 @@ def test_a_mesh_is_opened_or_dropped_anywhere(panel: Panel, tmp_path: Path) -> N
     expect(page.locator("#object-notes")).to_contain_text("ball & chain.ply: 320 faces, 162 vertices.")
     expect(page.locator("#object option:checked")).to_have_text("ball & chain.ply")
     panel.wait_for(lambda: str(panel.changes.get("object", "")).endswith(".ply"))
+    expect(page.locator("#object-name")).to_have_text("ball & chain.ply")
+    page.locator("#previous").click()
+    expect(page.locator("#caption")).to_have_text("The setting before: object sphere:1000")
+    page.reload()
+    expect(page.locator("#object-name")).to_have_text("ball & chain.ply")
+    expect(page).to_have_title("ball & chain.ply – fakesss tune")
+    expect(page.locator("#object option:checked")).to_have_text("ball & chain.ply")
+    later = page.evaluate(
+        """async () => {
+      const { titled } = await import(new URL("static/object_names.js", location.href));
+      return titled(`/cache/objects/${"17c0eaee".padEnd(64, "0")}.ply`);
+    }"""
+    )
+    assert later == "17c0eaee….ply"
     page.locator("#undo").click()
     expect(page.locator("#object")).to_have_value("sphere")
     drop(page, "broken.ply", "ply\nthis is none")

@@ -1,4 +1,5 @@
 // In which values settings differ, in words.
+import { titled } from "./object_names.js";
 import { isSame } from "./settings.js";
 
 // The scene paths and effects that are not the same in all of `several`.
@@ -35,6 +36,6 @@ function written(value) {
   if (value === null) return "auto";
   if (typeof value === "boolean") return value ? "on" : "off";
   if (typeof value === "number") return String(Number(value.toPrecision(4))).replace("-", "−");
-  if (!Array.isArray(value)) return String(value).split(/[\\/]/).at(-1);
+  if (!Array.isArray(value)) return titled(String(value));
   return value.some((part) => typeof part === "object") ? String(value.length) : `(${value.map(written).join(", ")})`;
 }

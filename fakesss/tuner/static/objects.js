@@ -1,8 +1,10 @@
 // The object: a built-in one with as many faces as asked for, or a mesh file, chosen or dropped anywhere on the page.
-import { Scale, written } from "./numbers.js";
+import { Scale } from "./numbers.js";
+import { learn, titled } from "./object_names.js";
 import { upload } from "./server.js";
 
 export function start(context) {
+  for (const [object, name] of Object.entries(context.start.brought)) learn(object, name);
   const chooser = new Chooser(context);
   const file = document.getElementById("object-file");
   document.getElementById("open-object").addEventListener("click", () => file.click());
@@ -21,11 +23,12 @@ class Chooser {
   #builtIn = new Set([...this.#select.options].map(({ value }) => value));
   #scale = new Scale({ ...this.#faces.dataset, label: "faces", low: 1, high: 1, step: 1, whole: "" });
   #usual = Number(this.#faces.dataset.default);
+  #shown = null;
 
   constructor({ settings, say }) {
     Object.assign(this, { settings, say });
-    this.#select.addEventListener("change", () => this.#choose());
-    this.#faces.addEventListener("change", () => this.#choose());
+    this.#select.addEventListener("change", () => this.#choose(this.#count));
+    this.#faces.addEventListener("change", () => this.#choose(this.#faces.value));
     settings.addEventListener("change", () => this.#show());
     this.#show();
   }
@@ -36,7 +39,7 @@ class Chooser {
     this.#notes.textContent = `Reading ${mesh.name} …`;
     try {
       const { object, faces, vertices, notes } = await upload(`object?name=${encodeURIComponent(mesh.name)}`, mesh);
-      this.#offer(object, mesh.name);
+      learn(object, mesh.name);
       this.settings.set("object", object);
       const counts = `${mesh.name}: ${faces.toLocaleString("en")} faces, ${vertices.toLocaleString("en")} vertices.`;
       this.#notes.textContent = [counts, ...notes].join(" ");
@@ -47,31 +50,41 @@ class Chooser {
     }
   }
 
-  #choose() {
+  // Of the object as it is, whatever was typed and not taken.
+  get #count() {
+    const [shape, count] = this.settings.value("object").split(":");
+    return (this.#builtIn.has(shape) && count) || "";
+  }
+
+  #choose(count) {
     const name = this.#select.value;
     if (!this.#builtIn.has(name)) return this.settings.set("object", name);
-    const { value, problem } = this.#faces.value ? this.#scale.read(this.#faces.value) : { value: this.#usual };
+    const { value, problem } = count ? this.#scale.read(count) : { value: this.#usual };
     this.#tell(problem ?? "");
     if (!problem) this.settings.set("object", value === this.#usual ? name : `${name}:${value}`);
   }
 
   #show() {
     const object = this.settings.value("object");
-    const [shape, count] = object.split(":");
+    const [shape] = object.split(":");
     const isBuiltIn = this.#builtIn.has(shape);
-    const title = isBuiltIn ? object : fileName(object);
+    const title = titled(object);
     this.#offer(isBuiltIn ? shape : object, isBuiltIn ? shape : title);
     this.#select.value = isBuiltIn ? shape : object;
     this.#faces.disabled = !isBuiltIn;
-    if (document.activeElement !== this.#faces) this.#faces.value = isBuiltIn ? (count ?? this.#usual) : "";
-    const heading = document.getElementById("object-name");
-    if (heading.textContent === title) return;
-    heading.textContent = title;
+    if (object !== this.#shown || document.activeElement !== this.#faces) {
+      this.#faces.value = isBuiltIn ? this.#count || this.#usual : "";
+      this.#tell("");
+    }
+    this.#shown = object;
+    document.getElementById("object-name").textContent = title;
     document.title = `${title} – fakesss tune`;
   }
 
   #offer(object, title) {
-    if (![...this.#select.options].some(({ value }) => value === object)) this.#select.add(new Option(title, object));
+    const option = [...this.#select.options].find(({ value }) => value === object) ?? new Option("", object);
+    option.text = title;
+    if (!option.parentElement) this.#select.add(option);
   }
 
   #tell(sentence) {
@@ -79,10 +92,6 @@ class Chooser {
     this.#problem.hidden = !sentence;
     this.#faces.setAttribute("aria-invalid", Boolean(sentence));
   }
-}
-
-function fileName(path) {
-  return path.split(/[\\/]/).at(-1);
 }
 
 function dropAnywhere(load) {
