@@ -2,12 +2,13 @@
 
 import os
 import sys
+from urllib.parse import urlsplit
 
 import click
 
 from fakesss.cli import AS_JSON, commands, done, say
 from fakesss.cli_picture import scene_named
-from fakesss.listening import is_loopback, reached_by
+from fakesss.listening import in_url, is_loopback, reached_by
 
 
 @commands.command()
@@ -30,10 +31,10 @@ def tune(scene: str, host: str, port: int, changes: tuple[str, ...], size: str |
 
     described = scene_named(scene, changes, size)
 
-    def announce(url: str) -> None:
+    def announce(url: str, address: str) -> None:
         done({"url": url, "scene_sha256": described.sha256()}, as_json, url)
         sys.stdout.flush()  # a pipe would keep it until the end
-        for hint in filter(None, (ssh_hint(url), network_hint(host, url))):
+        for hint in filter(None, (ssh_hint(url), network_hint(address, url))):
             say(hint)
         say("Open this address in a browser. Ctrl-C stops the tuner.")
 
@@ -41,18 +42,21 @@ def tune(scene: str, host: str, port: int, changes: tuple[str, ...], size: str |
 
 
 def ssh_hint(url: str) -> str:
-    """What to type on the machine that one sits at, if this one is reached by SSH."""
+    """What to type on the machine that one sits at, if this one is reached by SSH and no other way leads to `url`."""
     connection = os.environ.get("SSH_CONNECTION", "").split()  # client's address and port, server's address and port
-    if len(connection) != 4:
+    place = urlsplit(url)
+    if len(connection) != 4 or not place.hostname or not is_loopback(place.hostname):
         return ""
-    port = url.rpartition(":")[2].partition("/")[0]
-    return f"You are here by SSH: on your own machine run  ssh -L {port}:127.0.0.1:{port} {connection[2]}"
+    there = f"127.0.0.1:{place.port}"  # where ssh listens
+    also = "" if place.hostname in ("127.0.0.1", "::1") else f"  and open http://{there}{place.path} there"
+    forward = f"-L {place.port}:{in_url(place.hostname)}:{place.port}"
+    return f"You are here by SSH: on your own machine run  ssh {forward} {connection[2]}{also}"
 
 
-def network_hint(host: str, url: str) -> str:
-    """Who can reach it, if `host` is more than this machine."""
-    if is_loopback(host):
+def network_hint(address: str, url: str) -> str:
+    """Who can reach it, if the IP address that is listened on is more than this machine."""
+    if is_loopback(address):
         return ""
-    there = " or ".join(reached_by(host, url))
+    there = " or ".join(reached_by(address, url))
     means = "whoever has the address can use this machine's processor and write scenes and studies here"
     return f"Other machines reach it at {there}, unencrypted: {means}."

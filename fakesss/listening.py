@@ -1,6 +1,7 @@
 """A bound socket for a server of ours, and the addresses under which it is reached."""
 
 import contextlib
+import errno
 import ipaddress
 import socket
 from collections.abc import Iterator
@@ -20,34 +21,44 @@ def listening(host: str, port: int) -> Iterator[socket.socket]:
         listener.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
         try:
             listener.bind((host, port))
-        except (OSError, OverflowError) as error:
+        except (OSError, OverflowError, TypeError, ValueError) as error:  # the last two: a name that can be none
             reason = getattr(error, "strerror", None) or str(error)
-            raise BadInput(f"{host}:{port}: cannot be listened on ({reason}); choose another with --port") from None
+            is_port = isinstance(error, OverflowError) or getattr(error, "errno", 0) in (errno.EADDRINUSE, errno.EACCES)
+            mend = f"choose another with {'--port' if is_port else '--host'}"
+            raise BadInput(f"{host}:{port}: cannot be listened on ({reason}); {mend}") from None
         listener.listen(2048)
         yield listener
 
 
+def bound_to(listener: socket.socket) -> str:
+    """The IP address that it listens on, by whatever name that was given."""
+    return str(listener.getsockname()[0])
+
+
 def address_of(listener: socket.socket) -> str:
     """The URL under which the socket is reached from this machine."""
-    host, port = listener.getsockname()[:2]
-    host = {"0.0.0.0": "127.0.0.1", "::": "[::1]"}.get(host, f"[{host}]" if ":" in host else host)
-    return f"http://{host}:{port}"
+    address = bound_to(listener)
+    here = {"0.0.0.0": "127.0.0.1", "::": "::1"}.get(address, address)
+    return f"http://{in_url(here)}:{listener.getsockname()[1]}"
 
 
-def is_loopback(host: str) -> bool:
-    """Whether only this machine can connect."""
-    try:
-        return ipaddress.ip_address(host).is_loopback
-    except ValueError:
-        return host == "localhost"
+def in_url(address: str) -> str:
+    """An IP address as a URL has it: version 6 in brackets."""
+    return f"[{address}]" if ":" in address else address
 
 
-def reached_by(host: str, url: str) -> list[str]:
-    """Where others on the network find a server that listens on `host`, and on this machine is at `url`."""
-    families = {"0.0.0.0": [socket.AF_INET], "::": [socket.AF_INET, socket.AF_INET6]}.get(host, [])
+def is_loopback(address: str) -> bool:
+    """Whether only this machine can connect to what listens on an IP address."""
+    found = ipaddress.ip_address(address)
+    return (getattr(found, "ipv4_mapped", None) or found).is_loopback
+
+
+def reached_by(address: str, url: str) -> list[str]:
+    """Where others on the network find a server that listens on `address`, and on this machine is at `url`."""
+    families = {"0.0.0.0": [socket.AF_INET], "::": [socket.AF_INET, socket.AF_INET6]}.get(address, [])
     behind = url.rpartition(":")[2]  # port and path
-    found = [address for family in families for address in own_addresses(family)]
-    return [f"http://{f'[{address}]' if ':' in address else address}:{behind}" for address in found] or [url]
+    found = [one for family in families for one in own_addresses(family)]
+    return [f"http://{in_url(one)}:{behind}" for one in found] or [url]
 
 
 def own_addresses(family: socket.AddressFamily) -> list[str]:

@@ -13,12 +13,12 @@ from study_server.storage.database import Database
 from study_server.storage.engines import shown_url
 
 
-def announcement(site: Site, url: str, host: str, proxies: Sequence[str], workers: int) -> str:
-    """The lines, warnings last. `url`: where it is from here. `host`: what it listens on.
+def announcement(site: Site, url: str, address: str, proxies: Sequence[str], workers: int) -> str:
+    """The lines, warnings last. `url`: where it is from here. `address`: the IP address that it listens on.
 
     A secret from the environment is not repeated: what is printed ends in logs.
     """
-    is_local, urls = is_loopback(host), [url] if proxies else reached_by(host, url)
+    is_local, urls = is_loopback(address), [url] if proxies else reached_by(address, url)
     from_environment = bool(os.environ.get(SECRET_VARIABLE))
     secret = f"the one in {SECRET_VARIABLE}" if from_environment else f"{site.admin_secret} (kept in the database)"
     lines = [

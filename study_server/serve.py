@@ -12,7 +12,7 @@ from typing import Any
 import uvicorn
 from fastapi import FastAPI
 
-from fakesss.listening import address_of, listening
+from fakesss.listening import address_of, bound_to, listening
 from fakesss.problem import BadInput
 from study_server.announcement import announcement
 from study_server.app import create_app
@@ -61,7 +61,7 @@ def serve(
         raise BadInput(f"--workers {workers}: SQLite has one writer; give a PostgreSQL database with --database")
     allow_many_files()
     with listening(host, port) as listener:
-        announce(app, host, address_of(listener), proxies=proxies, workers=workers)
+        announce(app, bound_to(listener), address_of(listener), proxies=proxies, workers=workers)
         if workers > 1:
             database.close()
             run_workers(listener, workers, settings, **arguments)
@@ -147,6 +147,6 @@ def checked_proxies(proxies: Sequence[str]) -> Sequence[str]:
     return proxies
 
 
-def announce(app: FastAPI, host: str, url: str, *, proxies: Sequence[str] = (), workers: int = 1) -> None:
+def announce(app: FastAPI, address: str, url: str, *, proxies: Sequence[str] = (), workers: int = 1) -> None:
     """Where everything is and what is trusted, on standard error."""
-    print(announcement(app.state.site, url, host, proxies, workers), file=sys.stderr, flush=True)
+    print(announcement(app.state.site, url, address, proxies, workers), file=sys.stderr, flush=True)

@@ -20,7 +20,6 @@ from starlette.types import ASGIApp, Message, Receive, Scope, Send
 from fakesss.tuner.uploads import MOST_BYTES
 
 OWN_NAMES = ("localhost", "127.0.0.1", "[::1]")
-EVERYWHERE = ("0.0.0.0", "::")
 HOST = re.compile(r"(?P<name>[A-Za-z0-9.-]+|\[[0-9A-Fa-f:.]+\])(:[0-9]{1,5})?")
 
 POLICY = (
@@ -40,10 +39,13 @@ LIMITS = {"object": MOST_BYTES}  # of the others
 
 
 class Guards:
-    """Refuses who does not know `token` or comes from elsewhere; what is inside sees paths without the token."""
+    """Refuses who does not know `token` or comes from elsewhere; what is inside sees paths without the token.
 
-    def __init__(self, app: ASGIApp, token: str, host: str) -> None:
-        self.app, self.token, self.is_ours = app, token.encode(), known_names(host)
+    `host`: what it was told to listen on; `address`: the IP address that this is.
+    """
+
+    def __init__(self, app: ASGIApp, token: str, host: str, address: str) -> None:
+        self.app, self.token, self.is_ours = app, token.encode(), known_names(host, address)
 
     async def __call__(self, scope: Scope, receive: Receive, send: Send) -> None:
         """Serve one request or WebSocket, or refuse it with one sentence."""
@@ -88,24 +90,30 @@ def refused(status: int, sentence: str) -> Response:
     return JSONResponse({"error": sentence}, status)
 
 
-def known_names(host: str) -> Callable[[str], bool]:
-    """Whether a name in lower case, as it stands in a Host header, is one of ours when listening on `host`."""
-    given = f"[{host}]" if ":" in host else host
-    ours = {*OWN_NAMES, given.lower()}
-    if host not in EVERYWHERE:
-        return ours.__contains__
-    ours |= {socket.gethostname().lower(), socket.getfqdn().lower()}
-    # an address is no name that somebody else could point here
-    return lambda name: name in ours or is_address(name)
+def known_names(host: str, address: str) -> Callable[[str], bool]:
+    """Whether a name in lower case, as it stands in a Host header, is one of ours when listening on `host`, which is
+    `address`.
+
+    An address is no name that somebody else could point here: where we listen on it, it is ours however it is spelt.
+    """
+    bound = ipaddress.ip_address(address)
+    ours = {*OWN_NAMES, host.lower()}
+    if bound.is_unspecified:  # everywhere
+        ours |= {socket.gethostname().lower(), socket.getfqdn().lower()}
+
+    def is_ours(name: str) -> bool:
+        meant = address_in(name)
+        return name in ours or (meant is not None and (bound.is_unspecified or meant == bound))
+
+    return is_ours
 
 
-def is_address(name: str) -> bool:
-    """Whether it is an IP address, version 6 in brackets."""
+def address_in(name: str) -> ipaddress.IPv4Address | ipaddress.IPv6Address | None:
+    """The IP address that a name is, version 6 in brackets; None of another name."""
     try:
-        ipaddress.ip_address(name.removeprefix("[").removesuffix("]"))
+        return ipaddress.ip_address(name.removeprefix("[").removesuffix("]"))
     except ValueError:
-        return False
-    return True
+        return None
 
 
 def is_same_origin(headers: Headers) -> bool:

@@ -14,7 +14,7 @@ from typing import Any
 import uvicorn
 from starlette.types import ASGIApp
 
-from fakesss.listening import address_of, listening
+from fakesss.listening import address_of, bound_to, listening
 from fakesss.mesh import Mesh
 from fakesss.scene import Scene
 from fakesss.shader_source import GLSL
@@ -34,18 +34,18 @@ def serve(
     host: str,
     port: int,
     write_study: WriteStudy,
-    announce: Callable[[str], None],
+    announce: Callable[[str, str], None],
 ) -> None:
-    """Tune `scene` until interrupted, which ends the program. `announce` is told the address, with its secret, as soon
-    as it answers.
+    """Tune `scene` until interrupted, which ends the program. `announce` is told the URL, with its secret, as soon as
+    it answers, and the IP address that is listened on.
 
     Raises `BadInput` if the port is taken, there is no OpenGL, or no such object.
     """
     with listening(host, port) as listener:
         tuner = Tuner(scene, Path.cwd(), GLSL, write_study, read_object(scene.object))
         token = secrets.token_urlsafe(TOKEN_BYTES)
-        server = PromptServer(configured(Guards(create_app(tuner), token, host)))
-        announce(f"{address_of(listener)}/{token}/")
+        server = PromptServer(configured(Guards(create_app(tuner), token, host, bound_to(listener))))
+        announce(f"{address_of(listener)}/{token}/", bound_to(listener))
         try:
             server.run(sockets=[listener])
         except KeyboardInterrupt:
@@ -91,11 +91,11 @@ def tuned(
 
 
 @contextlib.contextmanager
-def running(tuner: Tuner, port: int = 0, token: str = "") -> Iterator[str]:
+def running(tuner: Tuner, port: int = 0, token: str = "", host: str = "127.0.0.1") -> Iterator[str]:
     """The same for a tuner that was made already."""
     token = token or secrets.token_urlsafe(TOKEN_BYTES)
-    with listening("127.0.0.1", port) as listener:
-        server = PromptServer(configured(Guards(create_app(tuner), token, "127.0.0.1")))
+    with listening(host, port) as listener:
+        server = PromptServer(configured(Guards(create_app(tuner), token, host, bound_to(listener))))
         thread = threading.Thread(target=server.run, kwargs={"sockets": [listener]})
         thread.start()
         try:

@@ -129,8 +129,9 @@ def test_what_every_answer_carries(http: httpx.Client, url: str, path: str) -> N
         ("127.0.0.1", "192.0.2.7", False),
         ("192.0.2.7", "192.0.2.7", True),
         ("192.0.2.7", "192.0.2.8", False),
-        ("lab.example", "lab.example", True),
         ("::1", "[::1]", True),
+        ("2001:db8::1", "[2001:0DB8:0::1]", True),
+        ("::ffff:192.0.2.7", "[::ffff:c000:207]", True),
         ("0.0.0.0", "192.0.2.7", True),
         ("0.0.0.0", "[2001:db8::1]", True),
         ("0.0.0.0", "evil.example", False),
@@ -138,8 +139,18 @@ def test_what_every_answer_carries(http: httpx.Client, url: str, path: str) -> N
     ],
 )
 def test_which_names_are_ours(host: str, name: str, is_ours: bool) -> None:
-    assert known_names(host)(name) is is_ours
-    assert known_names(host)("localhost")
+    assert known_names(host, host)(name.lower()) is is_ours
+    assert known_names(host, host)("localhost")
+
+
+def test_a_name_that_was_given_and_its_address_are_ours() -> None:
+    is_ours = known_names("Lab.example", "192.0.2.7")
+    assert [is_ours(name) for name in ("lab.example", "192.0.2.7", "192.0.2.8", "evil.example")] == [
+        True,
+        True,
+        False,
+        False,
+    ]
 
 
 @pytest.mark.parametrize(

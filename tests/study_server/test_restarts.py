@@ -41,7 +41,7 @@ def test_the_survey_needs_no_renderer() -> None:
 
 
 @pytest.mark.parametrize(
-    ("host", "warns"), [("127.0.0.1", False), ("localhost", False), ("::1", False), ("0.0.0.0", True)]
+    ("host", "warns"), [("127.0.0.1", False), ("::ffff:127.0.0.1", False), ("::1", False), ("0.0.0.0", True)]
 )
 def test_what_is_printed_at_the_start(study: Path, capsys: pytest.CaptureFixture[str], host: str, warns: bool) -> None:
     announce(create_app(study), host, "http://127.0.0.1:8000")
