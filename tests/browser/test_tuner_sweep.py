@@ -1,17 +1,15 @@
-"""Sweep from here: the preview, and the study whose pictures are those that were seen; links and files that restore."""
+"""Sweep from here: the preview, and the study whose pictures are those that were seen."""
 
 import json
 import struct
-import tomllib
 from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
-from urllib.parse import quote
 
 import pytest
 from accessible import cut_off, violations, with_axe
-from playwright.sync_api import Browser, BrowserContext, Locator, Page, Route, WebSocket, expect
-from tuner_pages import Talk, drag, middle, opened, wait
+from playwright.sync_api import Browser, Locator, Page, Route, WebSocket, expect
+from tuner_pages import Talk, drag, link, middle, opened, wait
 from tuner_server import tuned
 
 from fakesss.cli_study import build_study
@@ -50,11 +48,6 @@ def talk(page: Page, url: str) -> Talk:
     found = opened(page, url)
     page.locator("#tab-sweep").click()
     return found
-
-
-def link(url: str, settings: dict[str, Any]) -> str:
-    """The address that restores `settings`."""
-    return f"{url}#s={quote(json.dumps(settings))}"
 
 
 def factor(page: Page, place: str) -> Locator:
@@ -266,69 +259,6 @@ def test_levels_have_no_more_digits_than_they_need(page: Page, talk: Talk) -> No
     assert spaced(1, 3, 4, True) == [1, 1.44, 2.08, 3]
     assert spaced(4, 64, 4, multiple=4, whole="") == [4, 24, 44, 64]
     assert spaced(1, 3, 5, whole="") == [1, 2, 3]
-
-
-def test_a_link_restores_everything(context: BrowserContext, page: Page, talk: Talk, url: str) -> None:
-    context.grant_permissions(["clipboard-read", "clipboard-write"])
-    drag(page, 20, 0)
-    talk.settled(after=1)
-    page.locator("#link").click()
-    expect(page.locator("#link-result")).to_have_text("Copied.")
-    copied = page.evaluate("() => navigator.clipboard.readText()")
-    assert copied == page.url == page.locator("#link-text").input_value()
-    other = context.new_page()
-    restored = opened(other, copied)
-    wait(other, lambda: restored.changes == talk.changes != {})
-    other.close()
-
-    page.locator("#link-paste").fill(link("http://127.0.0.1:1/of-yesterday/", SETTINGS))
-    page.keyboard.press("Enter")
-    wait(page, lambda: talk.of("wish")[-1]["settings"] == SETTINGS)
-    expect(page.locator("#link-dialog")).to_be_hidden()
-    page.locator("#undo").click()
-    assert page.url == copied
-    page.evaluate("address => { location.hash = new URL(address).hash }", link(url, SETTINGS))
-    wait(page, lambda: talk.of("wish")[-1]["settings"] == SETTINGS)
-
-
-BROKEN = {
-    "#s=%7B%22changes": "it is cut off or mistyped",
-    "#s=null": "it is cut off or mistyped",
-    "#t=1": "it is cut off or mistyped",
-    f"#s={quote(json.dumps({'changes': {'material.backlihgt': 1}}))}": 'did you mean "material.backlight"?',
-    f"#s={quote(json.dumps({'changes': {'object': '/etc/passwd.obj'}}))}": "is no file of this tuner",
-}
-
-
-def test_a_broken_link_says_so_and_changes_nothing(page: Page, talk: Talk) -> None:
-    before, result = page.url, page.locator("#link-result")
-    page.locator("#link").click()
-    for fragment, sentence in BROKEN.items():
-        page.locator("#link-paste").fill(before + fragment)
-        page.locator("#link-use").click()
-        expect(result).to_contain_text("This link restores nothing: ")
-        expect(result).to_contain_text(sentence)
-        page.evaluate("fragment => { location.hash = fragment }", fragment)
-        wait(page, lambda: page.url == before)
-    assert talk.changes == {}
-    expect(page.locator("#undo")).to_be_disabled()
-
-
-def test_a_scene_is_downloaded_or_written_once(page: Page, talk: Talk, folder: Path) -> None:
-    drag(page, 20, 0)
-    talk.settled(after=1)
-    page.locator("#save").click()
-    page.locator("#save-file").fill("mine.toml")
-    with page.expect_download() as download:
-        page.locator("#download").click()
-    assert download.value.suggested_filename == "mine.toml"
-    scene = Scene.from_dict(tomllib.loads(Path(download.value.path()).read_text(encoding="utf-8")), "mine.toml")
-    assert scene == SCENE.replace(talk.changes)
-    page.locator("#save-here").click()
-    expect(page.locator("#save-result")).to_contain_text("Written: ")
-    assert Scene.load(folder / "mine.toml") == scene
-    page.locator("#save-here").click()
-    expect(page.locator("#save-result .problem")).to_contain_text("exists already; choose another name")
 
 
 def test_the_preview_and_the_dialogs_are_for_everybody(browser: Browser, url: str) -> None:

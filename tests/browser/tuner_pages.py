@@ -5,6 +5,7 @@ import json
 import struct
 from collections.abc import Callable
 from typing import Any
+from urllib.parse import quote
 
 import numpy as np
 import numpy.typing as npt
@@ -150,3 +151,8 @@ def rewrite(
 def panel(page: Page, name: str) -> None:
     """Open one of the panel's tabs."""
     page.get_by_role("tab", name=name).click()
+
+
+def link(url: str, settings: dict[str, Any]) -> str:
+    """The address that restores `settings`."""
+    return f"{url}#s={quote(json.dumps(settings))}"

@@ -1,25 +1,30 @@
 // What outlives the page: a link that restores everything, and the scene's file.
 import { copied, copyable } from "./copying.js";
 import { post, postForFile } from "./server.js";
-import { asFragment, fromFragment } from "./settings.js";
+import { asFragment, fromFragment, isSame } from "./settings.js";
+
+const AT_START = { changes: {}, effects: {} };
 
 export function start(context) {
   startLink(context);
   startSave(context);
 }
 
-function startLink({ settings, say }) {
+function startLink({ settings, stage, connection, start, say }) {
   const dialog = document.getElementById("link-dialog");
   const text = document.getElementById("link-text");
   const paste = document.getElementById("link-paste");
   const result = document.getElementById("link-result");
+  let taken = settings.current; // the last that the server found to be a scene
+  let refused = null; // the last that it did not
 
   // The address bar goes along, without an entry of its own in the browser's history: undo is ours.
-  settings.addEventListener("change", ({ detail }) => {
-    if (!detail.moving) history.replaceState(null, "", address());
-  });
-  addEventListener("hashchange", () => restore(location.hash));
-  if (location.hash) restore(location.hash);
+  settings.addEventListener("change", ({ detail }) => detail.moving || write());
+  stage.addEventListener("view", write);
+  stage.addEventListener("still", () => (taken = stage.picture().settings));
+  connection.addEventListener("message", ({ detail }) => detail.level === "error" && "number" in detail && check());
+  addEventListener("hashchange", restoreAddress);
+  if (location.hash) restoreAddress();
 
   document.getElementById("link").addEventListener("click", async () => {
     text.value = address();
@@ -30,9 +35,8 @@ function startLink({ settings, say }) {
   document.getElementById("link-copy").addEventListener("click", copy);
   document.getElementById("link-form").addEventListener("submit", async (event) => {
     event.preventDefault();
-    const problem = await restore(paste.value.slice(paste.value.indexOf("#")));
-    result.textContent = problem;
-    if (problem) return paste.focus();
+    result.textContent = await pasted(paste.value.trim());
+    if (result.textContent) return paste.focus();
     paste.value = "";
     dialog.close();
   });
@@ -43,36 +47,71 @@ function startLink({ settings, say }) {
     result.textContent = (await copied(text.value)) ? "Copied." : "Press Ctrl+C to copy it.";
   }
 
+  // A link that restores nothing is none: what was refused is left out.
   function address() {
-    const { changes, effects } = settings.current;
-    const isAtStart = !Object.keys(changes).length && !Object.keys(effects).length;
-    return location.href.split("#")[0] + (isAtStart ? "" : asFragment(settings.current));
+    const kept = isSame(settings.current, refused) ? taken : settings.current;
+    const isAtStart = stage.view === "picture" && isSame(kept, AT_START);
+    return location.href.split("#")[0] + (isAtStart ? "" : asFragment(kept, stage.view));
   }
 
-  // The settings of a link's fragment, once the server has found them to be a scene; the problem if they are none.
+  function write() {
+    history.replaceState(null, "", address());
+  }
+
+  // A wish got no picture. Its settings may be no scene, or a shader is broken, and they are to outlive that.
+  async function check() {
+    const asked = settings.current;
+    try {
+      await postForFile("scene.toml", { settings: asked });
+      taken = asked;
+    } catch (error) {
+      if (!error.isRefusal) return;
+      refused = asked;
+      write();
+    }
+  }
+
+  async function restoreAddress() {
+    const { problem, isOver } = await restore(() => location.hash);
+    if (isOver) write();
+    else say("error", `${problem} Reload the page to try again.`);
+  }
+
+  // The problem, "" if there is none.
+  async function pasted(link) {
+    if (!link) return "Paste a link first.";
+    return (await restore(() => (link.startsWith("#") ? link : new URL(link).hash))).problem;
+  }
+
+  // Takes up the settings of a link's fragment, once the server has found them to be a scene: {problem, isOver: whether
+  // another attempt would end the same}.
   async function restore(fragment) {
-    let problem = "";
     try {
       const found = read(fragment);
-      await postForFile("scene.toml", { settings: found });
-      settings.replace(found);
+      await postForFile("scene.toml", { settings: found.settings });
+      const view = Object.hasOwn(start.views, found.view) ? found.view : "picture"; // of another version, perhaps
+      if (stage.view !== view) stage.view = view;
+      settings.replace(found.settings);
+      return { problem: "", isOver: true };
     } catch (error) {
-      problem = `This link restores nothing: ${error.message}`;
+      if (!error.isRefusal) return { problem: `The tuner could not be asked about this link: ${error.message}`, isOver: false };
+      const problem = `This link restores nothing: ${error.message}`;
       say("error", problem);
+      return { problem, isOver: true };
     }
-    history.replaceState(null, "", address());
-    return problem;
   }
 }
 
+// What `fragment()` of a link holds: {settings, view}.
 function read(fragment) {
   let found = null;
   try {
-    found = fragment === "" ? { changes: {}, effects: {} } : fromFragment(fragment);
+    const text = fragment();
+    found = text === "" ? { settings: AT_START, view: "picture" } : fromFragment(text);
   } catch {
     // said below: what is wrong with it is of no use to a reader
   }
-  if (!found) throw new Error("it is cut off or mistyped; copy the whole of it.");
+  if (!found) throw Object.assign(new Error("it is cut off or mistyped; copy the whole of it."), { isRefusal: true });
   return found;
 }
 

@@ -1,6 +1,6 @@
 // Questions to the server over HTTP. Addresses are relative to the page's, which holds the token.
 
-// What `path` answers, as JSON; an Error with the server's one sentence where it refuses.
+// What `path` answers, as JSON; an Error with the server's one sentence where it refuses (`isRefusal`), or fails.
 export async function get(path) {
   return answer(await fetch(path));
 }
@@ -23,6 +23,7 @@ export async function upload(path, file) {
 
 async function answer(response) {
   const found = await response.json().catch(() => ({}));
-  if (!response.ok) throw new Error(found.error ?? `The tuner answered ${response.status}; see its terminal.`);
-  return found;
+  if (response.ok) return found;
+  const problem = new Error(found.error ?? `The tuner answered ${response.status}; see its terminal.`);
+  throw Object.assign(problem, { isRefusal: response.status === 422 });
 }

@@ -233,13 +233,13 @@ export function isSame(one, other) {
   );
 }
 
-// The settings as a link's fragment, and back; null for one that holds none.
-export function asFragment(settings) {
-  return `#s=${encodeURIComponent(JSON.stringify(settings))}`;
+// The settings as a link's fragment, with what is looked at if it is not the picture, and back; null for one that holds none.
+export function asFragment(settings, view) {
+  return `#s=${encodeURIComponent(JSON.stringify(view === "picture" ? settings : { ...settings, view }))}`;
 }
 
 export function fromFragment(fragment) {
   if (!fragment.startsWith("#s=")) return null;
-  const { changes, effects } = JSON.parse(decodeURIComponent(fragment.slice(3)));
-  return { changes: { ...changes }, effects: { ...effects } };
+  const { changes, effects, view } = JSON.parse(decodeURIComponent(fragment.slice(3)));
+  return { settings: { changes: { ...changes }, effects: { ...effects } }, view };
 }
