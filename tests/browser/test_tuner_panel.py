@@ -179,6 +179,21 @@ def test_a_changed_control_is_marked_and_comes_back_three_ways(panel: Panel) -> 
     expect(panel.slider("material.thickness_exponent")).to_be_focused()  # the button that had the focus is gone
 
 
+def test_the_clicks_that_a_double_click_is_made_of_are_no_steps_of_undo(panel: Panel) -> None:
+    panel.tab("material")
+    panel.type("material.backlight", "0.3")
+    panel.slider("material.diffuse_weight").dblclick(position={"x": 2, "y": 12})  # it was not changed: no step at all
+    panel.tab("lights")
+    panel.control("light.shadows").locator(".label").dblclick()  # each click toggles it
+    panel.wait_for_changes({"material.backlight": 0.3})
+    panel.tab("material")
+    panel.slider("material.backlight").dblclick()
+    expect(panel.typed("material.backlight")).to_have_value("1.2")
+    for changes in ({"material.backlight": 0.3}, {}):
+        panel.page.locator("#undo").click()
+        panel.wait_for_changes(changes)
+
+
 def test_srgb_and_linear_light_are_those_of_the_renderer(panel: Panel) -> None:
     both = panel.page.evaluate(
         """async (lights) => {

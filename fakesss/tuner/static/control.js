@@ -20,8 +20,10 @@ class Control {
     this.tip = this.tipPart.textContent;
     this.build();
     this.resetPart.addEventListener("click", () => this.reset());
+    this.marks = []; // when the pointer came down the last two times: the clicks of a double-click are no steps of their own
+    element.addEventListener("pointerdown", () => (this.marks = [this.marks[1], settings.mark]));
     for (const target of element.querySelectorAll(".label, input[type=range]")) {
-      target.addEventListener("dblclick", () => this.reset());
+      target.addEventListener("dblclick", () => settings.join(this.marks[0], () => this.reset()));
     }
   }
 

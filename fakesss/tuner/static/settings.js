@@ -138,6 +138,21 @@ export class Settings extends EventTarget {
     if (this.#gestures.size < before) this.#tell();
   }
 
+  // The last step of undo, only to be handed to `join`.
+  get mark() {
+    return this.#before.at(-1);
+  }
+
+  // What `act` changes is one step with all those since `mark`, and none if nothing comes of them.
+  join(mark, act) {
+    act();
+    const first = this.#before.indexOf(mark) + 1;
+    if (this.#before.length === first || (mark && !first)) return;
+    this.#before.length = first + 1;
+    if (isSame(this.#before[first], this.#current)) this.#before.pop();
+    this.#tell();
+  }
+
   undo() {
     this.#step(this.#before, this.#after);
   }
