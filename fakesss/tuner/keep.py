@@ -18,6 +18,7 @@ from fakesss.tuner.wishes import Settings
 router = APIRouter()
 
 PLAIN = re.compile(r"\w([\w .-]{0,98}[\w-])?")
+MOST_BYTES = 200  # of a name in UTF-8: file systems take 255, a suffix and a name that is written to first among them
 RESERVED = re.compile(r"(con|prn|aux|nul|com\d|lpt\d)(\..*)?", re.IGNORECASE)  # on Windows, whatever follows the dot
 
 
@@ -109,6 +110,8 @@ def plain_name(name: str, what: str) -> str:
         raise BadInput(
             f"{what} {json.dumps(name, ensure_ascii=False)}: cannot be the name of a new {what} here; {mend}"
         )
+    if len(name.encode()) > MOST_BYTES:
+        raise BadInput(f"{what} {json.dumps(name, ensure_ascii=False)}: is too long for a file system; shorten it")
     return name
 
 
