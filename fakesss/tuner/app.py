@@ -8,7 +8,7 @@ from dataclasses import asdict
 
 from fastapi import APIRouter, FastAPI, WebSocket
 from fastapi.exceptions import RequestValidationError
-from fastapi.responses import HTMLResponse, JSONResponse
+from fastapi.responses import HTMLResponse
 from fastapi.staticfiles import StaticFiles
 from starlette.exceptions import HTTPException
 from starlette.requests import Request
@@ -21,6 +21,7 @@ from fakesss.problem import BadInput
 from fakesss.shader_source import ShaderError
 from fakesss.shapes import names
 from fakesss.tuner import asking, keep
+from fakesss.tuner.answers import Answer, refused
 from fakesss.tuner.guards import BODY_LIMIT
 from fakesss.tuner.page import HERE, page
 from fakesss.tuner.presets import qualities
@@ -40,6 +41,8 @@ def create_app(tuner: Tuner) -> FastAPI:
         redoc_url=None,
         openapi_url=None,
         lifespan=watching,
+        default_response_class=Answer,
+        redirect_slashes=False,  # it would lead out of the address that holds the secret
         max_body_size=BODY_LIMIT,
     )
     app.state.tuner = tuner
@@ -49,7 +52,7 @@ def create_app(tuner: Tuner) -> FastAPI:
     for problem in (BadInput, ShaderError):
         app.add_exception_handler(problem, unfit)
     app.add_exception_handler(RequestValidationError, not_understood)
-    app.add_exception_handler(HTTPException, no_page)
+    app.add_exception_handler(HTTPException, unanswerable)
     app.add_exception_handler(Gone, nobody)
     app.add_exception_handler(Exception, unexpected)
     return app
@@ -71,11 +74,11 @@ def the_page(tuner: AtTuner) -> HTMLResponse:
 
 
 @router.get("/start.json")
-def start(tuner: AtTuner) -> JSONResponse:
+def start(tuner: AtTuner) -> Answer:
     """What the page starts from."""
     from fakesss.tuner.looks import LOOKS  # loads matplotlib
 
-    return JSONResponse(
+    return Answer(
         {
             "base": tuner.base.model_dump(mode="json"),
             "objects": names(),
@@ -99,7 +102,7 @@ async def socket(connection: WebSocket, tuner: AtTuner) -> None:
 
 def unfit(request: Request, error: Exception) -> Response:
     """What a user can mend."""
-    return JSONResponse({"error": str(error)}, 422)
+    return refused(422, str(error))
 
 
 def not_understood(request: Request, error: Exception) -> Response:
@@ -107,14 +110,19 @@ def not_understood(request: Request, error: Exception) -> Response:
     assert isinstance(error, RequestValidationError)
     first = error.errors()[0]
     where = ".".join(str(part) for part in first["loc"])
-    return JSONResponse({"error": f"{where}: {first['msg']}."}, 422)
+    return refused(422, f"{where}: {first['msg']}.")
 
 
-def no_page(request: Request, error: Exception) -> Response:
-    """No such address, not with this method, or a body that is longer than it said."""
+def unanswerable(request: Request, error: Exception) -> Response:
+    """No such address, not with this method, a body that is longer than it said or cannot be read."""
     assert isinstance(error, HTTPException)
-    sentence = f"{error.detail}." if error.status_code == 413 else "There is no such page."
-    return JSONResponse({"error": sentence}, error.status_code, error.headers)
+    sentences = {
+        400: "The request could not be read: it is no JSON in UTF-8, or its numbers or tables go beyond all bounds.",
+        404: "There is no such page.",
+        405: f"This address does not take {request.method}.",
+    }
+    sentence = sentences.get(error.status_code, f"{error.detail}.")
+    return refused(error.status_code, sentence, error.headers)
 
 
 def nobody(request: Request, error: Exception) -> Response:
@@ -124,4 +132,4 @@ def nobody(request: Request, error: Exception) -> Response:
 
 def unexpected(request: Request, error: Exception) -> Response:
     """A fault of ours, which is logged on its way up."""
-    return JSONResponse({"error": "Something went wrong here, a fault of the program; its terminal tells more."}, 500)
+    return refused(500, "Something went wrong here, a fault of the program; its terminal tells more.")

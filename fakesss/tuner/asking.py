@@ -7,11 +7,12 @@ from typing import Annotated
 from fastapi import APIRouter, Query
 from pydantic import Field
 from starlette.requests import Request
-from starlette.responses import JSONResponse, Response
+from starlette.responses import Response
 
 from fakesss.media import medium_named
 from fakesss.problem import BadInput, Strict
 from fakesss.scene import Pixels, Scene
+from fakesss.tuner.answers import Answer
 from fakesss.tuner.frames import PICTURE, Asked
 from fakesss.tuner.reload import read_again, stamps
 from fakesss.tuner.state import AtTuner
@@ -60,25 +61,25 @@ def check_smaller(size: tuple[int, int], scene: Scene) -> None:
 
 
 @router.post("/reload")
-async def reload(tuner: AtTuner) -> JSONResponse:
+async def reload(tuner: AtTuner) -> Answer:
     """The shaders as they are now, for everybody who looks: where a change of a file is not noticed by itself."""
     await read_again(tuner, list(stamps(tuner.shaders)))
-    return JSONResponse({})
+    return Answer({})
 
 
 @router.post("/medium")
-def medium(asked: MediumAsked, tuner: AtTuner) -> JSONResponse:
+def medium(asked: MediumAsked, tuner: AtTuner) -> Answer:
     """The changes that make the shader resemble a measured medium, before any fit."""
     from fakesss.offline.fit_start import starting_scene
 
     scene = tuner.scene(asked.settings)
     found = starting_scene(scene, medium_named(asked.medium, "medium"), asked.size_mm)
     before, after = (one.material.model_dump(mode="json") for one in (scene, found))
-    return JSONResponse({"changes": {f"material.{name}": after[name] for name in after if after[name] != before[name]}})
+    return Answer({"changes": {f"material.{name}": after[name] for name in after if after[name] != before[name]}})
 
 
 @router.post("/object", max_body_size=MOST_BYTES)
-async def load_object(request: Request, tuner: AtTuner, name: Annotated[str, Query(max_length=255)]) -> JSONResponse:
+async def load_object(request: Request, tuner: AtTuner, name: Annotated[str, Query(max_length=255)]) -> Answer:
     """A mesh file, the request's body as it is: where it was put, and what is to be said of it."""
     path = await tuner.uploads.receive(name, request.stream())
     try:
@@ -87,6 +88,6 @@ async def load_object(request: Request, tuner: AtTuner, name: Annotated[str, Que
         path.unlink(missing_ok=True)
         raise BadInput(str(error).replace(str(path), f'"{name}"')) from None
     tuner.uploads.names[str(path)] = name
-    return JSONResponse(
+    return Answer(
         {"object": str(path), "faces": len(mesh.faces), "vertices": len(mesh.positions), "notes": mesh.repairs}
     )

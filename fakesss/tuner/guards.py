@@ -14,9 +14,10 @@ from collections.abc import Callable
 from urllib.parse import urlsplit
 
 from starlette.datastructures import Headers, MutableHeaders
-from starlette.responses import JSONResponse, RedirectResponse, Response
+from starlette.responses import RedirectResponse, Response
 from starlette.types import ASGIApp, Message, Receive, Scope, Send
 
+from fakesss.tuner.answers import refused
 from fakesss.tuner.uploads import MOST_BYTES
 
 OWN_NAMES = ("localhost", "127.0.0.1", "[::1]")
@@ -83,11 +84,6 @@ class Guards:
         if length.isdecimal() and int(length) > limit:
             return refused(413, f"This is more than the {limit >> 20} MB that can be taken here.")
         return None
-
-
-def refused(status: int, sentence: str) -> Response:
-    """An answer that a program can read as well."""
-    return JSONResponse({"error": sentence}, status)
 
 
 def known_names(host: str, address: str) -> Callable[[str], bool]:

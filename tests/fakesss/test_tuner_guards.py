@@ -57,6 +57,30 @@ def test_without_a_slash_one_is_led_to_it(http: httpx.Client, url: str) -> None:
 
 
 @pytest.mark.gl
+def test_a_slash_too_many_does_not_lead_out_of_the_secret(http: httpx.Client, url: str) -> None:
+    assert http.get(url + "start.json/").status_code == 404
+
+
+@pytest.mark.gl
+@pytest.mark.parametrize(
+    ("method", "body", "status", "words"),
+    [
+        ("POST", b'{"view": "\xff"}', 400, "could not be read"),
+        ("POST", b'{"view": ' + b"[" * 100_000 + b"]" * 100_000 + b"}", 400, "could not be read"),
+        ("POST", b'{"view": ' + b"1" * 5000 + b"}", 400, "could not be read"),
+        ("POST", rb'{"view": "\ud800"}', 422, 'view "\ud800"'),
+        ("POST", rb'{"settings": {"changes": {"\ud800": 1}}}', 422, "\ud800"),
+        ("DELETE", b"", 405, "This address does not take DELETE."),
+    ],
+)
+def test_a_refusal_says_what_is_wrong(
+    http: httpx.Client, url: str, method: str, body: bytes, status: int, words: str
+) -> None:
+    answer = http.request(method, url + "picture", content=body, headers={"Content-Type": "application/json"})
+    assert answer.status_code == status and words in answer.json()["error"]
+
+
+@pytest.mark.gl
 @pytest.mark.parametrize(
     "host",
     ["evil.example", "evil.example:{port}", "127.0.0.1.evil.example", "localhost.evil.example:{port}", "", "a b"],
