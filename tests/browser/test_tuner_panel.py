@@ -194,6 +194,32 @@ def test_the_clicks_that_a_double_click_is_made_of_are_no_steps_of_undo(panel: P
         panel.wait_for_changes(changes)
 
 
+def test_a_finger_that_scrolls_leaves_the_slider_that_it_came_down_on(panel: Panel) -> None:
+    panel.tab("material")
+    devtools = panel.page.context.new_cdp_session(panel.page)
+
+    def swipe(right: float, down: float) -> None:
+        box = panel.slider("material.backlight").bounding_box()
+        assert box
+        x, y = box["x"] + box["width"] / 3, box["y"] + 12
+        for kind, share in (("Start", 0), *(("Move", step / 4) for step in range(1, 5)), ("End", None)):
+            points = [] if share is None else [{"x": x + share * right, "y": y + share * down}]
+            devtools.send("Input.dispatchTouchEvent", {"type": f"touch{kind}", "touchPoints": points})
+
+    number = panel.typed("material.backlight")
+    swipe(0, -60)
+    expect(panel.slider("material.backlight")).to_have_js_property("valueAsNumber", 400)
+    swipe(0, 0)
+    expect(number).to_have_value("0.95")
+    panel.wait_for_changes({"material.backlight": 0.95})
+    swipe(40, 2)
+    panel.wait_for(lambda: panel.changes["material.backlight"] > 1.2)
+    for changes in ({"material.backlight": 0.95}, {}):
+        panel.page.locator("#undo").click()
+        panel.wait_for_changes(changes)
+    devtools.detach()
+
+
 def test_srgb_and_linear_light_are_those_of_the_renderer(panel: Panel) -> None:
     both = panel.page.evaluate(
         """async (lights) => {

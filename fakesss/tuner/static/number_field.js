@@ -1,4 +1,5 @@
 // A slider and the number beside it. Keys and drags are gestures: each is one step of undo.
+import { slide } from "./finger.js";
 import { written } from "./numbers.js";
 
 const TEN = 10; // steps, with Shift or Page Up
@@ -16,8 +17,11 @@ export class NumberField {
     this.typed = element.querySelector("input.typed");
     this.scale = scale;
     this.hands = hands;
-    this.slider?.addEventListener("input", () => hands.change(scale.at(this.slider.valueAsNumber), true));
-    this.slider?.addEventListener("change", hands.settle);
+    if (this.slider) {
+      const take = (place) => hands.change(scale.at(place), true);
+      const leave = () => (this.slider.value = scale.place(this.#value));
+      slide(this.slider, { take, leave, settle: hands.settle });
+    }
     this.typed.addEventListener("input", () => (this.#isTyping = true));
     this.typed.addEventListener("change", () => this.#read());
     for (const input of [this.slider, this.typed].filter(Boolean)) {
