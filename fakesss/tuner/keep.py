@@ -73,7 +73,7 @@ def save(tuner: AtTuner, asked: Named) -> dict[str, str]:
 
 @router.post("/study")
 def study(tuner: AtTuner, asked: Sweep) -> dict[str, str]:
-    """Writes a study.toml into a new folder within the folder."""
+    """Writes a study.toml into a folder within the folder: a new one, or one that holds no study yet."""
     if tuner.write_study is None:
         raise BadInput("study: this tuner was started by a program that writes none; start it with `fakesss tune`")
     factors = [factor.model_dump() for factor in asked.factors]
