@@ -1,6 +1,7 @@
 """The command that changes a scene while one looks at it: tune."""
 
 import os
+import shlex
 import sys
 from urllib.parse import urlsplit
 
@@ -49,8 +50,8 @@ def ssh_hint(url: str) -> str:
         return ""
     there = f"127.0.0.1:{place.port}"  # where ssh listens
     also = "" if place.hostname in ("127.0.0.1", "::1") else f"  and open http://{there}{place.path} there"
-    forward = f"-L {place.port}:{in_url(place.hostname)}:{place.port}"
-    return f"You are here by SSH: on your own machine run  ssh {forward} {connection[2]}{also}"
+    forward = shlex.quote(f"{place.port}:{in_url(place.hostname)}:{place.port}")  # brackets are patterns to a shell
+    return f"You are here by SSH: on your own machine run  ssh -L {forward} {connection[2]}{also}"
 
 
 def network_hint(address: str, url: str) -> str:
