@@ -167,12 +167,14 @@ def test_a_changed_control_is_marked_and_comes_back_three_ways(panel: Panel) -> 
     panel.tab("material")
     row = panel.control("material.thickness_exponent")
     reset = row.get_by_role("button", name="Reset thickness exponent")
+    height = row.evaluate("row => row.offsetHeight")
     for way in (row.locator(".label").dblclick, panel.slider("material.thickness_exponent").dblclick, reset.click):
         expect(row).not_to_have_class("changed")
         expect(reset).to_be_hidden()
         panel.typed("material.thickness_exponent").fill("18")
         panel.typed("material.thickness_exponent").press("Enter")
         expect(reset).to_be_visible()
+        assert row.evaluate("row => row.offsetHeight") == height  # the rows below stay where they are
         way()
         panel.wait_for_changes({})
         expect(panel.typed("material.thickness_exponent")).to_have_value("25")
