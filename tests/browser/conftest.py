@@ -10,7 +10,10 @@ from playwright.sync_api import Browser, BrowserContext, Page, Playwright, sync_
 
 sys.path.insert(0, str(Path(__file__).parents[1]))
 
+from accessible import with_axe
 from study_fixture import write_study
+from tuner_panel import BASE, Panel
+from tuner_server import tuned
 
 from study_server.serve import served
 
@@ -106,4 +109,24 @@ def page(context: BrowserContext) -> Iterator[Page]:
     errors: list[str] = []
     tab.on("pageerror", lambda error: errors.append(str(error)))
     yield tab
+    assert errors == []
+
+
+@pytest.fixture(scope="session")
+def panel_opened(browser: Browser, tmp_path_factory: pytest.TempPathFactory) -> Iterator[Panel]:
+    """A tuner's page for all tests of its panel."""
+    with (
+        tuned(BASE, tmp_path_factory.mktemp("tuned")) as address,
+        with_axe(browser.new_context(viewport={"width": 1280, "height": 800})) as context,
+    ):
+        context.set_default_timeout(15_000)
+        yield Panel(context.new_page(), address)
+
+
+@pytest.fixture
+def panel(panel_opened: Panel) -> Iterator[Panel]:
+    """That page, with the settings that it started with; a script error in it fails the test."""
+    yield panel_opened
+    panel_opened.reset()
+    errors, panel_opened.errors[:] = panel_opened.errors.copy(), ()
     assert errors == []

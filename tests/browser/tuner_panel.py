@@ -6,12 +6,21 @@ from typing import Any
 from playwright.sync_api import Locator, Page
 from tuner_pages import opened, wait
 
+from fakesss.scene import Scene
+
+BASE = Scene.from_dict(
+    {"object": "sphere:1000", "size": [64, 64], "supersampling": 1, "occlusion": {"rays": 4}}, "test"
+)
+"""The scene of the tuner that the tests of the panel share."""
+
 
 class Panel:
     """A tab with the tuner."""
 
     def __init__(self, page: Page, url: str) -> None:
         self.page = page
+        self.errors: list[str] = []
+        page.on("pageerror", lambda error: self.errors.append(str(error)))
         self.talk = opened(page, url)
 
     def tab(self, name: str) -> None:
