@@ -1,15 +1,13 @@
 """Sweep from here: the preview, and the study whose pictures are those that were seen."""
 
-import json
-import struct
 from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
 import pytest
 from accessible import cut_off, violations, with_axe
-from playwright.sync_api import Browser, Locator, Page, Route, WebSocket, expect
-from tuner_pages import Talk, drag, link, middle, opened, wait
+from playwright.sync_api import Browser, Locator, Page, Route, WebSocketRoute, expect
+from tuner_pages import Stills, Talk, drag, link, middle, opened, panel, wait
 from tuner_server import tuned
 
 from fakesss.cli_study import build_study
@@ -76,22 +74,16 @@ def names(buttons: Locator) -> list[str | None]:
     return [button.get_attribute("aria-label") for button in buttons.all()]
 
 
-class Stills:
-    """The PNG of every still frame that a page was sent, by its wish's number."""
+def messages(page: Page) -> list[WebSocketRoute]:
+    """The connections of a page that is opened next, to say something in the tuner's place."""
+    found: list[WebSocketRoute] = []
 
-    def __init__(self, page: Page) -> None:
-        self.by_number: dict[int, bytes] = {}
-        page.on("websocket", self._listen)
+    def between(route: WebSocketRoute) -> None:
+        route.connect_to_server()
+        found.append(route)
 
-    def _listen(self, socket: WebSocket) -> None:
-        socket.on("framereceived", self._keep)
-
-    def _keep(self, payload: str | bytes) -> None:
-        if isinstance(payload, bytes):
-            (length,) = struct.unpack_from("<I", payload)
-            header = json.loads(payload[4 : 4 + length])
-            if not header["moving"]:
-                self.by_number[header["number"]] = payload[4 + length :]
+    page.route_web_socket("**/socket", between)
+    return found
 
 
 def test_what_is_seen_is_what_is_built_and_rendered(page: Page, url: str, folder: Path) -> None:
@@ -196,10 +188,39 @@ def test_a_picture_goes_to_the_stage_and_back(page: Page, talk: Talk) -> None:
     expect(buttons.last).to_have_attribute("aria-pressed", "false")
     expect(page.locator("#sweep-cell")).to_be_hidden()
     assert talk.changes == {}
+    late: list[Route] = []
+    page.route("**/picture", lambda route: late.append(route))
+    buttons.last.click()
+    wait(page, lambda: late)
+    drag(page, 5, 5)  # before its picture is there
+    expect(page.locator("#sweep-cell")).to_be_hidden()
+    expect(buttons.last).to_have_attribute("aria-pressed", "false")
+    page.unroute_all()
+    page.locator("#undo").click()
+    talk.settled()
+    previewed(page, 6)
+    seen = len(talk.of("wish"))
     buttons.first.click()
     page.locator("#use-these").click()
-    talk.settled(after=1)
+    talk.settled(after=seen)
     assert talk.changes == {"material.backlight": 0, "material.thickness_exponent": 5}
+
+
+def test_shaders_that_changed_draw_the_picture_on_the_stage_anew(page: Page, url: str) -> None:
+    said = messages(page)
+    opened(page, url)
+    panel(page, "Sweep")
+    vary(page, "across", "material.backlight", "0, 2")
+    buttons = previewed(page, 2)
+    buttons.last.click()
+    expect(page.locator("#caption")).to_have_text("backlight 2")
+    asked: list[Any] = []
+    page.on("request", lambda request: asked.append(request.post_data_json))
+    said[-1].send('{"type": "again"}')
+    expect(page.locator("#caption")).to_have_text("backlight 2")
+    expect(buttons.last).to_have_attribute("aria-pressed", "true")
+    whole = {"settings": {"changes": {"material.backlight": 2}, "effects": {}}}
+    wait(page, lambda: whole in asked)
 
 
 def test_what_cannot_be_or_cannot_be_told_apart_is_said(page: Page, talk: Talk, folder: Path) -> None:
@@ -236,29 +257,20 @@ def test_the_value_now_is_marked_and_can_be_added(page: Page, talk: Talk) -> Non
     expect(factor(page, "across").locator(".levels")).to_have_value("10, 25, 40")
     expect(now).to_have_text("Now 25. Add it", use_inner_text=False)
     expect(now.get_by_role("button")).to_be_hidden()
+    panel(page, "Shader")
+    page.locator("#technique").uncheck()  # backlight off, by hand
+    panel(page, "Sweep")
+    vary(page, "across", "material.backlight", "0, 1.2, 1.2000001")
+    expect(now).to_contain_text("Now 0.")
+    expect(page.locator("#sweep-grid td")).to_have_text(["0 now", "1.2 now", "1.2000001 now"])
+    expect(page.locator("#sweep-grid .is-now:visible")).to_have_count(1)
+    vary(page, "across", "shadow.samples")
+    for end, value in (("from", "1"), ("to", "5"), ("count", "9")):
+        factor(page, "across").locator(f".{end}").fill(value)
+        factor(page, "across").locator(f".{end}").press("Enter")
+    expect(factor(page, "across").locator(".levels")).to_have_value("1, 2, 3, 4, 5")
+    expect(factor(page, "across").locator(".count")).to_have_value("5")
     assert not [url for url in asked if url.endswith("/study")], "written by Enter in a field"
-
-
-LEVELS = """async ([from, to, count, isRatios, data]) => {
-  const { spaced } = await import("./static/sweep_levels.js");
-  const { Scale } = await import("./static/numbers.js");
-  return spaced(from, to, count, isRatios, new Scale({ low: 0, high: 1, step: 0.01, label: "", ...data }));
-}"""
-
-
-def test_levels_have_no_more_digits_than_they_need(page: Page, talk: Talk) -> None:
-    def spaced(start: float, end: float, count: int, ratios: bool = False, **data: Any) -> Any:
-        return page.evaluate(LEVELS, [start, end, count, ratios, data])
-
-    assert spaced(10, 40, 3) == [10, 25, 40]
-    assert spaced(0, 1, 4) == [0, 0.33, 0.67, 1]
-    assert spaced(0.00390625, 0.01, 3) == [0.00390625, 0.007, 0.01]
-    assert spaced(40, 10, 5) == [40, 32.5, 25, 17.5, 10]
-    assert spaced(1, 1000, 4, True) == [1, 10, 100, 1000]
-    assert spaced(1e-3, 4e-3, 3, True) == [1e-3, 2e-3, 4e-3]
-    assert spaced(1, 3, 4, True) == [1, 1.44, 2.08, 3]
-    assert spaced(4, 64, 4, multiple=4, whole="") == [4, 24, 44, 64]
-    assert spaced(1, 3, 5, whole="") == [1, 2, 3]
 
 
 def test_the_preview_and_the_dialogs_are_for_everybody(browser: Browser, url: str) -> None:

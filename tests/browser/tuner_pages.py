@@ -73,6 +73,24 @@ class Talk:
         return is_last and not frames[-1]["stand_in"]
 
 
+class Stills:
+    """The PNG of every still frame that a page was sent, by its wish's number."""
+
+    def __init__(self, page: Page) -> None:
+        self.by_number: dict[int, bytes] = {}
+        page.on("websocket", self._listen)
+
+    def _listen(self, socket: WebSocket) -> None:
+        socket.on("framereceived", self._keep)
+
+    def _keep(self, payload: str | bytes) -> None:
+        if isinstance(payload, bytes):
+            (length,) = struct.unpack_from("<I", payload)
+            header = json.loads(payload[4 : 4 + length])
+            if not header["moving"]:
+                self.by_number[header["number"]] = payload[4 + length :]
+
+
 def wait(page: Page, condition: Callable[[], object]) -> None:
     """Return once `condition()` holds, while the page's events go on; an assertion fails after `SECONDS`."""
     for _ in range(int(SECONDS * 100)):

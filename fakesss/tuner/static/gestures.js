@@ -3,6 +3,7 @@
 // Every gesture is one step of undo, from the first touch to the last. Angles go by the picture: a drag across its
 // shorter side is half a turn.
 import { picked } from "./lights.js";
+import { wrapped } from "./numbers.js";
 
 const SLOP_PX = 6; // a finger trembles by less
 const PAUSE_MS = 250; // after which the next turn of the wheel, or tap on a key, is another gesture
@@ -191,12 +192,6 @@ function inWords(settings) {
     `Camera ${of("camera.azimuth")}° around, ${of("camera.elevation")}° up; ` +
     `light ${of(picked.path("light.azimuth"))}° around, ${of(picked.path("light.elevation"))}° up.`
   );
-}
-
-// Degrees in -180..180, to a hundredth.
-function wrapped(degrees) {
-  const turned = ((((degrees + 180) % 360) + 360) % 360) - 180;
-  return Number(turned.toFixed(2));
 }
 
 function upright(degrees) {

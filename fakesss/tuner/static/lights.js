@@ -1,4 +1,5 @@
 // Which of the lights the panel shows and a right drag moves, and how lights are added and taken away.
+import { wrapped } from "./numbers.js";
 
 const MOST = 32; // fakesss.lights.MOST_LIGHTS
 const APART = 60; // degrees from the light that a new one is a copy of
@@ -61,8 +62,7 @@ function mainLight(settings) {
 
 // The same light from another side, without its ambient light: that would be counted twice.
 function another(light) {
-  const azimuth = ((light.azimuth + APART + 540) % 360) - 180;
-  return { ...light, azimuth, ambient: [0, 0, 0] };
+  return { ...light, azimuth: wrapped(light.azimuth + APART), ambient: [0, 0, 0] };
 }
 
 // One radio button for each light.

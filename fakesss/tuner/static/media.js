@@ -12,7 +12,7 @@ export function start({ settings, say, start: { media } }) {
 
   function show() {
     const { sigma_s_prime: scattering, sigma_a: absorption } = media[medium.value];
-    const triple = (numbers) => numbers.map(written).join(", ");
+    const triple = (numbers) => numbers.map((number) => written(number)).join(", ");
     document.getElementById("medium-numbers").textContent =
       `Per mm in R, G, B: reduced scattering ${triple(scattering)}; absorption ${triple(absorption)}.`;
   }

@@ -1,8 +1,10 @@
 // A number's limits, its place on a slider, and how it is read and written.
 
-const DIGITS = 5; // shown; of small numbers, whose zeros take room, one fewer
+export const DIGITS = 5; // shown; of small numbers, whose zeros take room, one fewer
 const LOG_STEPS = 100; // key presses from one end of a logarithmic slider to the other
 const PLACES = 1000; // on a slider
+
+const GROUPED = /^-?[1-9]\d{0,2},\d{3}$/; // 60,000 is sixty to some and sixty thousand to others
 
 // What a control's element says of its numbers (fakesss.tuner.controls.Control.data).
 export class Scale {
@@ -50,9 +52,13 @@ export class Scale {
 
   // What was typed, as {value} or {problem}: "0.25", "0,25", "1e-3" and "1/256" are numbers.
   read(text) {
-    const [top, bottom = "1", ...rest] = text.trim().replaceAll(",", ".").split("/");
+    const typed = text.trim();
+    const [top, bottom = "1", ...rest] = typed.replaceAll(",", ".").split("/");
     const value = rest.length || !top.trim() || !bottom.trim() ? NaN : Number(top) / Number(bottom);
-    if (!Number.isFinite(value)) return { problem: `"${text.trim()}" is not a number.` };
+    if (!Number.isFinite(value)) return { problem: `"${typed}" is not a number.` };
+    if (GROUPED.test(this.isWhole ? typed.replace(".", ",") : typed)) {
+      return { problem: `"${typed}" may be ${value} or ${typed.replace(/[.,]/, "")}: write one of these.` };
+    }
     if (this.isWhole && !Number.isInteger(value)) return { problem: `${this.label} must be a whole number.` };
     if (this.multiple && value % this.multiple) return { problem: `${this.label} must be a multiple of ${this.multiple}.` };
     if (this.isAbove && value <= this.least) return { problem: `${this.label} must be more than ${this.least}.` };
@@ -62,6 +68,14 @@ export class Scale {
   }
 }
 
-export function written(value) {
-  return value === null || value === undefined ? "" : String(Number(value.toPrecision(Math.abs(value) < 0.1 ? DIGITS - 1 : DIGITS)));
+// Whole numbers in full, others with so many digits.
+export function written(value, digits = DIGITS) {
+  if (value === null || value === undefined) return "";
+  return String(Number.isInteger(value) ? value : Number(value.toPrecision(Math.abs(value) < 0.1 ? digits - 1 : digits)));
+}
+
+// Degrees in -180..180, to a hundredth.
+export function wrapped(degrees) {
+  const turned = ((((degrees + 180) % 360) + 360) % 360) - 180;
+  return Number(turned.toFixed(2));
 }

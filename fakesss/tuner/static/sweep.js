@@ -1,6 +1,6 @@
 // Sweep from here: what varies, a preview of every picture, and the study that shows them to people.
 import { postForFile } from "./server.js";
-import { alike, combinations, SmallPictures } from "./sweep_cells.js";
+import { alike, combinations, drawn, SmallPictures } from "./sweep_cells.js";
 import { FactorForm } from "./sweep_factor.js";
 import { fill, markNow, walkable } from "./sweep_grid.js";
 import { startStudy } from "./sweep_study.js";
@@ -26,6 +26,8 @@ class Sweep extends EventTarget {
   #pictures = new Map(); // cell -> its small picture, of the settings now
   #problems = new Map(); // cell -> why it has none
   #isDue = false; // some are missing, and none is being drawn
+  #isBehind = false; // forms and cells: the settings went on
+  #form = document.getElementById("sweep");
   #chosen = null; // the cell whose picture is on the stage
   #asked = new AbortController(); // for that picture
 
@@ -35,14 +37,15 @@ class Sweep extends EventTarget {
     const [across, down] = document.querySelectorAll("#sweep .factor");
     this.forms = [new FactorForm(down, settings, true), new FactorForm(across, settings, false)];
     for (const form of this.forms) form.addEventListener("change", () => this.#vary());
-    settings.addEventListener("change", () => this.#settingsChanged());
+    settings.addEventListener("change", ({ detail }) => this.#settingsChanged(detail));
     connection.addEventListener("message", ({ detail }) => detail.type === "again" && this.#forget());
     stage.addEventListener("still", () => this.#drawIfDue());
     stage.addEventListener("live", () => this.#choose(null));
-    document.getElementById("sweep").addEventListener("submit", (event) => event.preventDefault());
+    this.#form.addEventListener("submit", (event) => event.preventDefault());
     document.getElementById("use-these").addEventListener("click", () => this.#use());
     document.getElementById("back-to-live").addEventListener("click", () => this.#back());
-    new ResizeObserver(() => this.#drawIfDue()).observe(this.#preview); // the panel's tab was chosen
+    const seen = new ResizeObserver(() => this.#seen()); // the panel's tab was chosen
+    for (const part of [this.#form, this.#preview]) seen.observe(part);
     this.#large.addEventListener("close", () => this.#moveTo(this.#preview.querySelector(".over")));
     this.#large.querySelector(".close").addEventListener("click", () => this.#large.close());
     document.getElementById("sweep-larger").addEventListener("click", () => this.#enlarge());
@@ -77,8 +80,23 @@ class Sweep extends EventTarget {
     this.dispatchEvent(new Event("change"));
   }
 
-  // What does not vary has changed. The pictures wait for the stage's own.
-  #settingsChanged() {
+  // What does not vary has changed, many times while something moves: the rest of it waits until that rests and somebody
+  // looks here, and the pictures for the stage's own.
+  #settingsChanged({ moving }) {
+    if (this.#chosen) this.#choose(null);
+    if (!this.#isBehind) this.#outdate();
+    this.#isBehind = true;
+    if (!moving) this.#follow();
+  }
+
+  #seen() {
+    this.#follow();
+    this.#drawIfDue();
+  }
+
+  #follow() {
+    if (!this.#isBehind || this.settings.isMoving || !this.#form.checkVisibility()) return;
+    this.#isBehind = false;
     for (const form of this.forms) form.showSettings();
     if (!this.cells.length) return;
     const next = combinations(this.factors, this.settings, this.settings.current);
@@ -86,16 +104,19 @@ class Sweep extends EventTarget {
     this.#renew();
   }
 
-  #renew() {
+  // What is seen is not what would be drawn now.
+  #outdate() {
     this.#small.stop();
     this.#pictures.clear();
     this.#problems.clear();
     this.#isDue = true;
+    for (const { button } of this.cells) button.classList.add("waits");
+  }
+
+  #renew() {
+    this.#outdate();
     const [width, height] = this.settings.value("size");
-    for (const { button } of this.cells) {
-      button.classList.add("waits");
-      button.firstElementChild.style.aspectRatio = `${width} / ${height}`;
-    }
+    for (const { button } of this.cells) button.firstElementChild.style.aspectRatio = `${width} / ${height}`;
     const columns = Number(this.#table.dataset.columns);
     this.#table.style.maxWidth = `${columns * (width / devicePixelRatio + BESIDE_PX) + HEADER_PX}px`; // no picture enlarged
     markNow(this.#table, (factor, level) => this.#isNow(factor, level));
@@ -104,7 +125,7 @@ class Sweep extends EventTarget {
 
   #isNow(factor, level) {
     const { path, levels } = this.factors[factor];
-    return levels[level] === this.settings.value(path);
+    return levels[level] === drawn(this.settings, path);
   }
 
   async #drawIfDue() {
@@ -165,6 +186,7 @@ class Sweep extends EventTarget {
   #forget() {
     this.#small.forget();
     if (this.cells.length) this.#renew();
+    if (this.#chosen) this.#bring();
   }
 
   #enlarge() {
@@ -184,13 +206,19 @@ class Sweep extends EventTarget {
     this.#large.close();
     if (cell === this.#chosen) return this.#back();
     this.#choose(cell);
+    await this.#bring();
+  }
+
+  async #bring() {
+    const { settings, name } = this.#chosen;
+    this.#asked.abort();
     const { signal } = (this.#asked = new AbortController());
     try {
-      const blob = await postForFile("picture", { settings: cell.settings }, signal);
-      if (!signal.aborted) await this.stage.show(blob, cell.name);
+      const blob = await postForFile("picture", { settings }, signal);
+      if (!signal.aborted) await this.stage.show(blob, name);
     } catch (problem) {
       if (signal.aborted) return;
-      this.#choose(null);
+      this.#back();
       this.say("error", problem.message);
     }
   }

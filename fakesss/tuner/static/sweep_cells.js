@@ -44,6 +44,16 @@ function withLevel(settings, current, path, level) {
   return next;
 }
 
+// The value that the picture is drawn with now: an effect switched by hand goes before what the panel says.
+export function drawn(settings, path) {
+  const found = Object.entries(SET_BY_EFFECT).find(([, field]) => field === path);
+  const state = settings.effect(found ? found[0] : path.endsWith(".shadows") ? "shadows" : "");
+  const value = settings.value(path);
+  if (state === "auto") return value;
+  if (typeof value === "boolean") return state === "on";
+  return state === "off" ? 0 : value;
+}
+
 function put(settings, next, path, value) {
   const [first, index, field] = path.split(".");
   if (first !== "lights") next.changes[path] = value;

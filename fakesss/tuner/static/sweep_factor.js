@@ -1,4 +1,5 @@
 // One setting that varies: which, and its levels. "change" follows whatever changes them.
+import { drawn } from "./sweep_cells.js";
 import { around, MOST_LEVELS, parsed, shown, spaced, variables } from "./sweep_levels.js";
 
 export class FactorForm extends EventTarget {
@@ -40,16 +41,12 @@ export class FactorForm extends EventTarget {
     this.#showNow();
   }
 
-  isNow(level) {
-    return this.#variable !== null && level === this.settings.value(this.#variable.path);
-  }
-
   // The select's options; whether the one that was chosen is gone.
   #offer() {
+    const lights = this.settings.value("lights").length;
+    if (lights === this.lights) return false;
+    this.lights = lights;
     const found = variables(this.settings);
-    const paths = found.map(({ path }) => path).join();
-    if (paths === this.offered) return false;
-    this.offered = paths;
     this.variables = new Map(found.map((each) => [each.path, each]));
     const chosen = this.path.value;
     const groups = Map.groupBy(found, ({ group }) => group);
@@ -93,6 +90,7 @@ export class FactorForm extends EventTarget {
     if (problem) return this.#take({ problem });
     const levels = spaced(from.value, to.value, count, isRatios, scale);
     this.levels.value = levels.join(", ");
+    if (this.count.value !== "") this.count.value = levels.length; // there may be fewer whole numbers
     this.#take({ levels });
   }
 
@@ -111,7 +109,7 @@ export class FactorForm extends EventTarget {
   }
 
   #showNow() {
-    const now = this.#variable && this.settings.value(this.#variable.path);
+    const now = this.#variable && drawn(this.settings, this.#variable.path);
     const isAmong = this.#levels.includes(now);
     this.now.hidden = !this.#variable;
     if (!this.#variable) return;
@@ -121,7 +119,7 @@ export class FactorForm extends EventTarget {
   }
 
   #addNow() {
-    const now = this.settings.value(this.#variable.path);
+    const now = drawn(this.settings, this.#variable.path);
     const levels = [...this.#levels, now].sort((one, other) => one - other);
     this.levels.value = levels.join(", ");
     this.levels.focus(); // the button vanishes
@@ -129,7 +127,7 @@ export class FactorForm extends EventTarget {
   }
 
   #label(level) {
-    return this.#variable.choices?.find(({ value }) => value === level)?.text ?? shown(level);
+    return this.#variable.choices?.find(({ value }) => value === level)?.text ?? shown(level, this.#levels);
   }
 }
 

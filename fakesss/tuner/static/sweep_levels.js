@@ -1,5 +1,5 @@
 // Which settings can vary, and levels between two numbers.
-import { Scale, written } from "./numbers.js";
+import { DIGITS, Scale, written } from "./numbers.js";
 
 export const MOST_LEVELS = 9;
 
@@ -66,8 +66,10 @@ function sensible(value, size, digits, scale) {
   return Number((Math.round(value / unit) * unit).toPrecision(12));
 }
 
-// "18, 25 30" as numbers, or the first problem.
+// "18, 25 30" as numbers, or the first problem. "0,3" may be one number or two.
 export function parsed(text, scale) {
+  const unclear = text.split(/[\s;]+/).find((word) => /\d,\d/.test(word) && !word.includes("."));
+  if (unclear) return { problem: `Is the comma of "${unclear}" a decimal point? Write a point, or a space after it.` };
   const words = text.split(/[\s,;]+/).filter(Boolean);
   if (!words.length) return { problem: "Give at least one level." };
   const read = words.map((word) => scale.read(word));
@@ -80,8 +82,12 @@ export function parsed(text, scale) {
   return { levels };
 }
 
-// A level as it is shown.
-export function shown(level) {
+// A level as it is shown: a number with as many digits as tell it from the others of `levels`.
+export function shown(level, levels) {
   if (typeof level === "boolean") return level ? "on" : "off";
-  return typeof level === "number" ? written(level) : String(level);
+  if (typeof level !== "number") return String(level);
+  const others = levels.filter((other) => other !== level);
+  let digits = DIGITS;
+  while (others.some((other) => written(other, digits) === written(level, digits))) digits++;
+  return written(level, digits);
 }
