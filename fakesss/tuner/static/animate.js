@@ -39,6 +39,11 @@ class Animation extends EventTarget {
     return this.#run(WANDERING, isOn);
   }
 
+  // Whatever goes on ends: something else is to be looked at.
+  rest() {
+    for (const gesture of [TURNING, WANDERING]) this.settings.settle(gesture);
+  }
+
   // Who wants less motion is asked first.
   async #run(gesture, isOn) {
     if (isOn && (await isMotionWanted())) this.settings.begin(gesture);

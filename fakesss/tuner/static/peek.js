@@ -8,27 +8,40 @@ const letters = document.getElementById("letter-keys"); // who speaks to a compu
 // `found()` gives {settings, view, caption} or null; `key` is a letter or digit.
 export class Peek {
   #isOn = false;
+  #presses = 0; // pictures may come after the press that asked for them
   #pressedAt = null;
+  #held = null; // the code of its key while that is down
   leave = new AbortController(); // forgets button and key
 
-  constructor({ stage, say }, pictures, button, key, found) {
-    Object.assign(this, { stage, say, pictures, button, found });
+  constructor({ settings, stage, animation, say }, pictures, button, key, found) {
+    Object.assign(this, { stage, animation, say, pictures, button, found });
     button.setAttribute("aria-pressed", false);
     const until = { signal: this.leave.signal };
     button.addEventListener("pointerdown", (event) => event.button === 0 && this.#press(event), until);
     button.addEventListener("pointercancel", () => this.#end(), until);
     button.addEventListener("click", () => this.#click(), until);
-    stage.addEventListener("live", () => this.#tell(false), until);
+    const over = () => this.#isOn && this.#tell(false);
+    for (const event of ["live", "view"]) stage.addEventListener(event, over, until);
+    settings.addEventListener("change", over, until); // also while its picture is still being drawn
     this.#listen(key, until);
   }
 
+  // The key is let go wherever the focus went meanwhile; with Shift let go before it, it is another letter.
   #listen(key, until) {
-    const isMine = (event) => event.key?.toLowerCase() === key && !isTyping(event);
     const isPlain = (event) => !event.repeat && !event.ctrlKey && !event.metaKey && !event.altKey;
-    const isBegun = (event) => letters.checked && isPlain(event) && isMine(event);
-    addEventListener("keydown", (event) => isBegun(event) && this.#begin(), until);
-    addEventListener("keyup", (event) => isMine(event) && this.#end(), until);
-    addEventListener("blur", () => this.#end(), until);
+    const isMine = (event) => letters.checked && isPlain(event) && event.key?.toLowerCase() === key && !isTyping(event);
+    const letGo = () => {
+      this.#held = null;
+      this.#end();
+    };
+    const down = (event) => {
+      if (!isMine(event)) return;
+      this.#held = event.code;
+      this.#begin();
+    };
+    addEventListener("keydown", down, until);
+    addEventListener("keyup", ({ code }) => code === this.#held && letGo(), until);
+    addEventListener("blur", letGo, until);
   }
 
   #press({ pointerId }) {
@@ -48,13 +61,16 @@ export class Peek {
 
   async #begin() {
     const found = this.found();
-    if (!found || this.button.disabled) return;
+    if (!found) return;
+    const press = ++this.#presses;
+    const isWanted = () => this.#isOn && press === this.#presses;
+    this.animation.rest(); // the next picture of what moves would be in its place at once
     this.#tell(true);
     try {
       const blob = await this.pictures.of(found.settings, found.view);
-      if (this.#isOn) await this.stage.show(blob, found.caption);
+      if (isWanted()) await this.stage.show(blob, found.caption);
     } catch (error) {
-      this.#end();
+      if (isWanted()) this.#end();
       this.say("error", error.message);
     }
   }

@@ -17,6 +17,7 @@ class Stage extends EventTarget {
   canvas = document.getElementById("picture");
   #drawing = this.canvas.getContext("2d");
   #select = document.getElementById("view");
+  #caption = document.getElementById("caption");
   #live = null; // {bitmap, size, header}: the last frame
   #still = null; // {blob, header, settings}
   #other = null; // {bitmap, caption}: shown in its place for a while
@@ -121,14 +122,16 @@ class Stage extends EventTarget {
     if (isOtherSize) Object.assign(this.canvas, { width, height });
     else this.#drawing.clearRect(0, 0, width, height);
     this.#drawing.drawImage(bitmap, 0, 0, width, height);
-    document.getElementById("caption").textContent = this.#caption();
+    this.#tellCaption();
     if (isOtherSize) this.#fit();
   }
 
-  #caption() {
-    if (this.#other) return this.#other.caption;
-    const { note, stand_in: standIn } = this.#live.header;
-    return [note, standIn].filter(Boolean).join(" ");
+  // That of another picture takes the room that there is, whatever it says: the picture must not move.
+  #tellCaption() {
+    const words = this.#other?.caption ?? [this.#live.header.note, this.#live.header.stand_in].filter(Boolean).join(" ");
+    this.#caption.style.height = this.#other ? `${this.#caption.offsetHeight}px` : "";
+    this.#caption.title = this.#other ? words : "";
+    this.#caption.textContent = words;
   }
 
   // One pixel of the picture on one of the screen, unless there is too little room. It is moved onto whole device pixels:
