@@ -5,6 +5,7 @@ import * as history from "./history.js";
 import { Peek } from "./peek.js";
 import { Pictures } from "./pictures.js";
 import { Pins } from "./pins.js";
+import { setPressable } from "./pressable.js";
 
 export function start(context) {
   const { settings, stage } = context;
@@ -12,7 +13,7 @@ export function start(context) {
   const button = document.getElementById("previous");
   history.start(context);
   new Peek(context, pictures, button, "b", () => before(settings, stage.view));
-  const show = () => (button.disabled = !settings.canUndo);
+  const show = () => setPressable(button, settings.canUndo);
   settings.addEventListener("change", show);
   show();
   difference.start(context, pictures, new Pins(context, pictures));

@@ -1,6 +1,7 @@
 // The panel's controls: each shown anew when anything changes.
 import { KINDS } from "./control.js";
 import { picked } from "./lights.js";
+import { setPressable } from "./pressable.js";
 import { isSame } from "./settings.js";
 
 const SOURCE = /^tuner: /; // where the server's sentences place what is wrong
@@ -52,7 +53,7 @@ function blame(controls, connection) {
 
 function resetting(controls, settings) {
   const button = document.getElementById("reset-all");
-  const show = () => (button.disabled = isSame(settings.current, { changes: {}, effects: {} }));
+  const show = () => setPressable(button, !isSame(settings.current, { changes: {}, effects: {} }));
   button.addEventListener("click", () => {
     for (const control of controls) control.forget();
     settings.reset();

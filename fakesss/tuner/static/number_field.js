@@ -48,6 +48,7 @@ export class NumberField {
     this.#isTyping = false;
     this.typed.value = written(this.#value);
     this.#say();
+    this.typed.dispatchEvent(new Event("taken", { bubbles: true })); // undo is the page's again
   }
 
   #press(event) {
