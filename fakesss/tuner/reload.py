@@ -42,4 +42,4 @@ async def read_again(tuner: Tuner, changed: list[str]) -> None:
     await tuner.studio.read_shaders_again()
     for viewer in tuple(tuner.viewers):
         viewer.say("info", sentence)
-        viewer.tell("again")
+        viewer.tell("again", shaders=True)

@@ -6,6 +6,7 @@ const KEPT = 24;
 
 export class Pictures {
   #kept = []; // {settings, view, blob}, the newest last
+  #shaders = 0; // how often they became others
 
   constructor({ connection, stage }) {
     stage.addEventListener("still", () => {
@@ -13,7 +14,9 @@ export class Pictures {
       if (!header.stand_in) this.#keep({ settings, view: header.view, blob });
     });
     connection.addEventListener("message", ({ detail }) => {
-      if (detail.type === "again") this.#kept = []; // the shaders are others
+      if (!detail.shaders) return;
+      this.#kept = [];
+      this.#shaders++;
     });
   }
 
@@ -21,8 +24,9 @@ export class Pictures {
   async of(settings, view) {
     const found = this.#kept.find((one) => one.view === view && isSame(one.settings, settings));
     if (found) return found.blob;
+    const shaders = this.#shaders;
     const blob = await postForFile("picture", { settings, view });
-    this.#keep({ settings, view, blob });
+    if (shaders === this.#shaders) this.#keep({ settings, view, blob });
     return blob;
   }
 

@@ -1,13 +1,14 @@
 // Up to four settings side by side. A click brings one back; 1 to 4 held show it at full size on the stage.
 import { differing, inWords } from "./differing.js";
 import { Peek } from "./peek.js";
+import { setPressable } from "./pressable.js";
 
 const MOST = 4;
 const KEY = `fakesss-pins ${location.pathname}`; // kept while this tab is open: a reload loses none
 
 export class Pins extends EventTarget {
   #count = 0; // of all that ever were
-  #pins = []; // {id, name, settings, view, entry: its element, index: its place, peek: its key}
+  #pins = []; // {id, name, settings, view, entry: its element, index: its place, peek: its key, asked: its newest picture}
   #list = document.getElementById("pins");
   #button = document.getElementById("pin");
 
@@ -16,7 +17,8 @@ export class Pins extends EventTarget {
     Object.assign(this, { context, pictures });
     this.#button.addEventListener("click", () => this.#pinned());
     context.settings.addEventListener("change", ({ detail }) => detail.moving || this.#tell());
-    for (const kept of restored()) this.#add(kept);
+    context.connection.addEventListener("message", ({ detail }) => detail.shaders && this.#renew());
+    for (const kept of restored()) this.#restored(kept);
     this.#tell();
   }
 
@@ -26,25 +28,49 @@ export class Pins extends EventTarget {
   }
 
   async #pinned() {
+    if (this.#pins.length === MOST) return;
     const { settings, stage } = this.context;
-    await this.#add({ name: "", settings: settings.current, view: stage.view });
+    const pin = this.#add({ name: "", settings: settings.current, view: stage.view });
     this.#keep();
+    try {
+      await this.#draw(pin);
+    } catch (error) {
+      this.#remove(pin);
+      this.context.say("error", `This cannot be pinned: ${error.message}`);
+    }
   }
 
-  async #add(pin) {
-    if (this.#pins.length === MOST) return;
+  // It stays without a picture too: the server may be busy, or a shader be wrong that will be mended.
+  async #restored(kept) {
+    const pin = this.#add(kept);
+    try {
+      await this.#draw(pin);
+    } catch (error) {
+      this.context.say("error", `A pin's picture could not be drawn: ${error.message}`);
+    }
+  }
+
+  #add(pin) {
     const entry = document.getElementById("pin-entry").content.firstElementChild.cloneNode(true);
     this.#pins.push(Object.assign(pin, { entry, id: `pin-${++this.#count}` }));
     this.#list.append(entry);
     this.#wire(pin);
     this.#tell();
-    try {
-      const blob = await this.pictures.of(pin.settings, pin.view);
-      entry.querySelector("img").src = URL.createObjectURL(blob);
-    } catch (error) {
-      this.#remove(pin);
-      this.context.say("error", `This cannot be pinned: ${error.message}`);
-    }
+    return pin;
+  }
+
+  async #draw(pin) {
+    const asked = (pin.asked = Symbol());
+    const blob = await this.pictures.of(pin.settings, pin.view);
+    if (asked !== pin.asked || !this.#pins.includes(pin)) return; // drawn with the shaders before, or removed meanwhile
+    const image = pin.entry.querySelector("img");
+    URL.revokeObjectURL(image.src);
+    image.src = URL.createObjectURL(blob);
+  }
+
+  // By other shaders. If they are wrong the last good pictures stay, which the stage says of its own.
+  async #renew() {
+    await Promise.allSettled(this.#pins.map((pin) => this.#draw(pin)));
   }
 
   #wire(pin) {
@@ -95,7 +121,7 @@ export class Pins extends EventTarget {
       entry.querySelector(".pin-name").placeholder = `pin ${index + 1}`;
       this.#listen(pin, index, `${name}: ${told}`);
     });
-    this.#button.disabled = this.#pins.length === MOST;
+    setPressable(this.#button, this.#pins.length < MOST);
     document.getElementById("compare").hidden = this.#pins.length === 0;
     this.dispatchEvent(new CustomEvent("change"));
   }
