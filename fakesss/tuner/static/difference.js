@@ -4,7 +4,7 @@ import { isSame } from "./settings.js";
 const LIVE = "live";
 const BEFORE = "before";
 
-export function start({ settings, stage, say }, pictures, pins) {
+export function start({ settings, stage, animation, say }, pictures, pins) {
   const [one, other, gain, button, words] = ["difference-one", "difference-other", "difference-gain", "show-difference", "difference-words"].map(
     (id) => document.getElementById(id),
   );
@@ -44,9 +44,11 @@ export function start({ settings, stage, say }, pictures, pins) {
   function turn(isShown) {
     isOn = isShown;
     button.setAttribute("aria-pressed", isOn);
-    if (isOn) return show();
-    number++;
-    tell("");
+    if (isOn) {
+      animation.rest(); // a difference is one of pictures that rest
+      return show();
+    }
+    forget();
     stage.showLive();
   }
 
@@ -60,13 +62,25 @@ export function start({ settings, stage, say }, pictures, pins) {
   }
 
   function refill() {
+    const before = [one.value, other.value];
     fill(one, LIVE);
     fill(other, pins.all[0]?.id ?? BEFORE);
-    if (isOn && !pins.all.length) turn(false); // its place is gone
+    if (isOn && !pins.all.length) return turn(false); // its place is gone
+    if (one.value === before[0] && other.value === before[1]) return;
+    forget();
+    again();
+  }
+
+  // What is said, or being computed, is of other pictures than those that are chosen now.
+  function forget() {
+    number++;
+    tell("");
   }
 
   // Once the live picture is as it will be, and whenever another one is no longer looked at.
   const again = () => isOn && isSame(stage.picture()?.settings, settings.current) && show();
+  settings.addEventListener("change", forget);
+  stage.addEventListener("view", forget);
   stage.addEventListener("still", again);
   stage.addEventListener("live", again);
   pins.addEventListener("change", refill);
