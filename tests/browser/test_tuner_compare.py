@@ -11,7 +11,7 @@ import pytest
 from accessible import violations, with_axe
 from PIL import Image
 from playwright.sync_api import Browser, BrowserContext, Page, expect
-from tuner_pages import Pixels, Talk, on_canvas, opened, wait
+from tuner_pages import Pixels, Talk, on_canvas, opened, pinned, press, shows, wait
 from tuner_server import tuned
 
 from fakesss.renderer import render_file
@@ -76,21 +76,6 @@ def rendered(changes: dict[str, Any], folder: Path) -> Pixels:
     return np.asarray(Image.open(path).convert("RGB"))
 
 
-def press(talk: Talk, *keys: str) -> Pixels:
-    """Keys on the picture; the still picture they lead to."""
-    seen = len(talk.of("wish"))
-    talk.page.locator("#place").focus()
-    for key in keys:
-        talk.page.keyboard.press(key)
-    talk.settled(after=seen)
-    return on_canvas(talk.page)
-
-
-def shows(page: Page, picture: Pixels) -> None:
-    """Wait until this is on the canvas."""
-    wait(page, lambda: np.array_equal(on_canvas(page), picture))
-
-
 def test_undo_and_redo_by_button_and_by_key(fresh: Talk) -> None:
     page = fresh.page
     first = on_canvas(page)
@@ -102,19 +87,33 @@ def test_undo_and_redo_by_button_and_by_key(fresh: Talk) -> None:
     page.locator("#undo").click()
     shows(page, first)
     expect(page.locator("#undo")).to_be_disabled()
+    expect(page.locator("#undo")).to_be_focused()
+    expect(page.locator("#spoken")).to_have_text("After undo: light azimuth −35.")
     page.keyboard.press("Control+y")
     shows(page, second)
     expect(page.locator("#redo")).to_be_disabled()
 
 
-def test_undo_in_a_field_is_the_field_s_own(page: Page, talk: Talk) -> None:
+def test_undo_in_a_field_is_the_field_s_own_while_its_text_is_not_taken(page: Page, talk: Talk) -> None:
     press(talk, "Shift+ArrowLeft")
     page.get_by_role("tab", name="Material").click()
     field = page.locator("#panel-material input.typed").first
     field.click()
+    shown = field.input_value()
     field.press("7")
     field.press("Control+z")
+    expect(field).to_have_value(shown)
     assert talk.changes == LEFT
+    field.press("Control+z")  # there is nothing typed any more
+    wait(page, lambda: talk.changes == {})
+    field.fill("0.7")
+    field.press("Enter")
+    wait(page, lambda: talk.changes != {})
+    field.press("Control+z")
+    wait(page, lambda: talk.changes == {})
+    page.locator("#view").focus()  # a list has no undo of its own
+    page.keyboard.press("Control+y")
+    wait(page, lambda: talk.changes != {})
 
 
 def test_holding_b_shows_the_setting_before(page: Page, talk: Talk) -> None:
@@ -141,6 +140,7 @@ def test_the_setting_before_by_a_click_and_until_something_changes(page: Page, t
     second = press(talk, "Shift+ArrowLeft")
     page.locator("#previous").click()
     shows(page, first)
+    expect(page.locator("#previous")).to_have_css("background-color", "rgb(255, 255, 255)")  # also under the pointer
     page.locator("#previous").click()
     shows(page, second)
     page.locator("#previous").press("Enter")
@@ -164,13 +164,6 @@ def test_the_button_can_be_held_too(fresh: Talk) -> None:
     page.mouse.move(300, 300)  # let go elsewhere
     page.mouse.up()
     shows(page, second)
-
-
-def pinned(page: Page, count: int) -> None:
-    """Pin what there is, as the pin of this number."""
-    page.locator("#pin").click()
-    image = page.locator("#pins img").nth(count - 1)
-    wait(page, lambda: image.evaluate("img => img.complete && img.naturalWidth") == SIZE)
 
 
 def test_pins_are_named_by_what_differs_and_brought_back(page: Page, talk: Talk) -> None:
@@ -236,7 +229,12 @@ def test_the_difference_is_that_of_the_rendered_files(page: Page, talk: Talk, tm
     page.locator("#show-difference").click()
     expect(page.locator("#difference-words")).to_have_text("No pixel differs.")
     assert not on_canvas(page)[..., :3].any()
-    press(talk, "Shift+ArrowLeft")
+    page.locator("#place").focus()
+    page.keyboard.down("Shift")
+    page.keyboard.down("ArrowLeft")
+    expect(page.locator("#difference-words")).to_have_text("")  # they were true of another picture
+    page.keyboard.up("ArrowLeft")
+    page.keyboard.up("Shift")
     expect(page.locator("#difference-words")).to_contain_text("Largest")  # drawn anew with the new picture
     before, after = (rendered(changes, tmp_path).astype(int) for changes in ({}, LEFT))
     apart = np.abs(before - after)
@@ -268,13 +266,24 @@ def test_pictures_of_different_sizes_have_no_difference(page: Page, talk: Talk) 
     expect(page.locator("#difference-words")).to_contain_text("different sizes: 64 × 96 and 96 × 96")
 
 
-def test_a_pin_whose_picture_is_refused_is_taken_away_and_that_is_said(fresh: Talk) -> None:
+def test_a_pin_whose_picture_fails_after_a_reload_stays_and_that_is_said(fresh: Talk) -> None:
     page = fresh.page
     pinned(page, 1)
+    page.route("**/picture", lambda route: route.fulfill(status=503, json={"error": "Come again."}))
     press(fresh, "Shift+ArrowLeft")
-    page.route("**/picture", lambda route: route.fulfill(status=422, json={"error": "There is no such mesh."}))
     page.reload()
-    expect(page.locator("#log")).to_contain_text("There is no such mesh.")
+    expect(page.locator("#log")).to_contain_text("A pin's picture could not be drawn: Come again.")
+    expect(page.locator("#pins li")).to_have_count(1)
+
+
+def test_what_cannot_be_drawn_cannot_be_pinned(page: Page) -> None:
+    page.get_by_role("tab", name="Camera").click()
+    for path, distance in (("camera.far", "3"), ("camera.near", "5")):
+        field = page.locator(f".control[data-path='{path}'] input.typed")
+        field.fill(distance)
+        field.press("Enter")
+    page.locator("#pin").click()
+    expect(page.locator("#log")).to_contain_text("This cannot be pinned:")
     expect(page.locator("#pins li")).to_have_count(0)
 
 

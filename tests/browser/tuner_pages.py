@@ -174,3 +174,25 @@ def panel(page: Page, name: str) -> None:
 def link(url: str, settings: dict[str, Any]) -> str:
     """The address that restores `settings`."""
     return f"{url}#s={quote(json.dumps(settings))}"
+
+
+def press(talk: Talk, *keys: str) -> Pixels:
+    """Keys on the picture; the still picture they lead to."""
+    seen = len(talk.of("wish"))
+    talk.page.locator("#place").focus()
+    for key in keys:
+        talk.page.keyboard.press(key)
+    talk.settled(after=seen)
+    return on_canvas(talk.page)
+
+
+def shows(page: Page, picture: Pixels) -> None:
+    """Wait until this is on the canvas."""
+    wait(page, lambda: np.array_equal(on_canvas(page), picture))
+
+
+def pinned(page: Page, count: int) -> None:
+    """Pin what there is, as the pin of this number."""
+    page.locator("#pin").click()
+    image = page.locator("#pins img").nth(count - 1)
+    wait(page, lambda: image.evaluate("img => img.complete && img.naturalWidth") > 0)
