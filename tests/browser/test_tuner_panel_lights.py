@@ -60,10 +60,11 @@ def test_lights_are_added_picked_tuned_and_removed(panel: Panel) -> None:
     add, remove = page.get_by_role("button", name="Add light"), page.get_by_role("button", name="Remove", exact=True)
     expect(remove).to_be_disabled()
     panel.type("light.elevation", "7")
-    panel.type("light.azimuth", "170")
+    panel.type("light.azimuth", "170.33")
     add.click()
     expect(panel.typed("light.elevation")).to_have_value("7")  # a copy of the main light as it is now
-    expect(panel.typed("light.azimuth")).to_have_value("-130")
+    expect(panel.typed("light.azimuth")).to_have_value("-129.67")
+    panel.wait_for(lambda: panel.changes["lights"][0]["azimuth"] == -129.67)  # what is shown is what is set
     panel.page.get_by_role("radio", name="Main light").check(force=True)
     for name in ("elevation", "azimuth"):
         panel.control(f"light.{name}").get_by_role("button", name=f"Reset {name}").click()
