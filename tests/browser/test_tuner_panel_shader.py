@@ -26,6 +26,7 @@ def test_effects_say_why_they_are_left_out(panel: Panel) -> None:
     panel.wait_for(lambda: panel.settings["effects"] == {"specular": "off"})
     shadows.get_by_role("radio", name="on").check(force=True)
     expect(shadows.locator(".reason")).to_have_text("simulated")
+    page.locator(".effect[data-effect=backlight]").get_by_role("radio", name="on").check(force=True)
     page.get_by_role("checkbox", name="technique").uncheck()
     expect(page.locator(".effect[data-effect=backlight]").get_by_role("radio", name="off")).to_be_checked()
     expect(page.locator(".effect[data-effect=blur] .reason")).to_contain_text("left out")
@@ -33,8 +34,8 @@ def test_effects_say_why_they_are_left_out(panel: Panel) -> None:
     expect(panel.control("material.backlight").locator(".otherwise")).to_have_text("off by hand, under Effects")
     expect(panel.slider("material.backlight")).to_be_hidden()
     panel.tab("shader")
-    page.get_by_role("checkbox", name="technique").check()
-    panel.wait_for(lambda: panel.settings["effects"] == {"specular": "off", "shadows": "on"})
+    page.get_by_role("checkbox", name="technique").check()  # as it was before
+    panel.wait_for(lambda: panel.settings["effects"] == {"specular": "off", "shadows": "on", "backlight": "on"})
     page.locator(".effect[data-effect=occlusion]").get_by_role("radio", name="off").check(force=True)
     expect(panel.control("occlusion.method").locator(".otherwise")).to_have_text("occlusion is off")
 

@@ -6,9 +6,11 @@ export function start({ settings, connection }) {
   const fieldsets = [...document.querySelectorAll(".effect")];
   const technique = document.getElementById("technique");
   let reasons = {};
+  let whenOn = "auto"; // what the technique was when it was last not off
 
   function show() {
     technique.checked = settings.effect(TECHNIQUE) !== "off";
+    if (technique.checked) whenOn = settings.effect(TECHNIQUE);
     for (const fieldset of fieldsets) {
       const state = settings.effect(fieldset.dataset.effect);
       fieldset.querySelector(`input[value=${state}]`).checked = true;
@@ -28,7 +30,7 @@ export function start({ settings, connection }) {
     }
   }
 
-  technique.addEventListener("change", () => settings.setEffect(TECHNIQUE, technique.checked ? "auto" : "off"));
+  technique.addEventListener("change", () => settings.setEffect(TECHNIQUE, technique.checked ? whenOn : "off"));
   for (const fieldset of fieldsets) {
     fieldset.addEventListener("change", ({ target }) => settings.setEffect(fieldset.dataset.effect, target.value));
   }
