@@ -7,9 +7,10 @@ system would give it; Chromium gathers movements until its next frame) until the
 Nothing is left out: time spent waiting for the frame before counts, which is mostly its drawing. *Newest* is from the
 last input that the picture answers, so how old the picture is that one sees.
 
-*Outside drawing* is 1 - draw / total, with the server's own time of drawing; *of answer* the same from the wish's
-leaving the page, so without what the input waited for the frame before it. *Still* is from letting go until the full
-picture, a PNG with all its samples, is on the canvas.
+*Outside* is the share of the total in which nothing was being drawn, this picture or the one before, by the server's
+own times of drawing, the way to the page taken as long as the way back; *of answer* is 1 - draw over the time from the
+wish's leaving the page, so without what the input waited for the picture before it. *Still* is from letting go until
+the full picture, a PNG with all its samples, is on the canvas.
 """
 
 import json
@@ -58,6 +59,7 @@ class Answered:
     encode: float
     travel: float  # both ways, and threads waking
     show: float  # decoding, drawing on the canvas
+    outside: float  # of the total, while nothing was being drawn
 
 
 @dataclass(frozen=True)
@@ -73,8 +75,8 @@ class Row:
     p95: float
     newest: float
     draw: float
-    outside_drawing: float  # median of the share, 0..1
-    outside_drawing_of_answer: float
+    outside: float  # median of the share, 0..1
+    outside_of_answer: float
     held: float
     wait: float
     encode: float
@@ -189,6 +191,10 @@ def performed(pages: Sequence[Page], gesture: str, moves: int) -> float:
 def answered(notes: dict[str, Any]) -> list[Answered]:
     """Every moving picture with the first input that it answers: one heard after the wish before it had left."""
     frames = {frame["number"]: frame for frame in notes["frames"] if frame["moving"] and frame["shown"]}
+    sent = {wish["number"]: wish["at"] for wish in notes["sent"]}
+    for frame in notes["frames"]:
+        if frame["number"] in sent:
+            frame["sent"] = sent[frame["number"]]
     found = []
     for before, wish in pairwise(notes["sent"]):
         inputs = [one["at"] for one in notes["inputs"] if before["at"] < one["heard"] <= wish["at"]]
@@ -199,8 +205,20 @@ def answered(notes: dict[str, Any]) -> list[Answered]:
         travel = frame["came"] - wish["at"] - times["wait"] - times["draw"] - times["encode"]
         total, newest = frame["shown"] - first, frame["shown"] - max(inputs)
         show = frame["shown"] - frame["came"]
-        found.append(Answered(total, newest, wish["at"] - first, travel=travel, show=show, **times))
+        drawing = sum(overlap(first, frame["shown"], each) for each in notes["frames"])
+        outside = total - drawing
+        found.append(Answered(total, newest, wish["at"] - first, travel=travel, show=show, outside=outside, **times))
     return found
+
+
+def overlap(first: float, last: float, frame: dict[str, Any]) -> float:
+    """For how long of the time between two moments a frame was being drawn."""
+    if "sent" not in frame:
+        return 0.0
+    times = frame["times"]
+    travel = frame["came"] - frame["sent"] - times["wait"] - times["draw"] - times["encode"]
+    end = frame["came"] - travel / 2 - times["encode"]
+    return max(0.0, min(last, end) - max(first, end - times["draw"]))
 
 
 def summary(what: tuple[str, int, int], notes: Sequence[dict[str, Any]], seconds: float) -> Row:
@@ -222,8 +240,8 @@ def summary(what: tuple[str, int, int], notes: Sequence[dict[str, Any]], seconds
         p95=float(np.percentile(totals, 95)),
         newest=median(lambda one: one.newest),
         draw=median(lambda one: one.draw),
-        outside_drawing=median(lambda one: 1 - one.draw / one.total),
-        outside_drawing_of_answer=median(lambda one: 1 - one.draw / (one.total - one.held)),
+        outside=median(lambda one: one.outside / one.total),
+        outside_of_answer=median(lambda one: 1 - one.draw / (one.total - one.held)),
         held=median(lambda one: one.held),
         wait=median(lambda one: one.wait),
         encode=median(lambda one: one.encode),
@@ -249,12 +267,13 @@ def cases(faces: Sequence[int], usual: int) -> Iterator[tuple[str, int, int]]:
 
 def table(rows: Sequence[Row]) -> str:
     """What docs/tuner.md shows of them, in Markdown."""
-    heads = ("gesture", "faces", "viewers", "pictures/s", "median", "95 %", "newest", "drawing", "outside", "still")
+    what = ("gesture", "faces", "viewers", "pictures/s")
+    heads = (*what, "median", "95 %", "newest", "drawing", "outside", "of answer", "still")
     lines = [f"| {' | '.join(heads)} |", f"|---|{'--:|' * (len(heads) - 1)}"]
     for row in rows:
         times = (row.per_second, row.median, row.p95, row.newest, row.draw)
         told = [row.gesture, f"{row.faces:,}", row.viewers, *(f"{time:.0f}" for time in times)]
-        told += [f"{row.outside_drawing_of_answer:.0%}", f"{row.still:.0f}"]
+        told += [f"{row.outside:.0%}", f"{row.outside_of_answer:.0%}", f"{row.still:.0f}"]
         lines.append(f"| {' | '.join(map(str, told))} |")
     return "\n".join(lines)
 

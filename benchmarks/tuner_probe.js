@@ -38,7 +38,8 @@
   const draw = CanvasRenderingContext2D.prototype.drawImage;
   CanvasRenderingContext2D.prototype.drawImage = function (...given) {
     draw.apply(this, given);
-    const frame = probe.frames.at(-1);
-    if (this.canvas.id === "picture" && frame) frame.shown ??= performance.now();
+    // the next may be here while this one is decoded
+    const frame = this.canvas.id === "picture" && probe.frames.find(({ shown }) => shown === null);
+    if (frame) frame.shown = performance.now();
   };
 })();

@@ -178,18 +178,21 @@ def samples(scene: Scene) -> int:
 def encoded(rendering: Rendering, moving: bool) -> tuple[bytes, str]:
     """The file that `fakesss render` writes, or quickly something like it; and its type."""
     if moving and not rendering.alpha:
-        light = np.nan_to_num(rendering.image[..., :3])
-        np.clip(light, 0, 1, out=light)
+        light = np.fmax(rendering.image, 0)  # 0 where it is no number
+        np.fmin(light, 1, out=light)
         light *= LEVELS - 1
-        return jpeg(TABLE.take(np.rint(light, out=light).astype(np.uint16))), "image/jpeg"
+        light += 0.5
+        return jpeg(TABLE.take(light.astype(np.uint16))), "image/jpeg"
     picture = np.nan_to_num(rendering.image) if rendering.non_finite else rendering.image
     return encode_png(picture, rendering.alpha), "image/png"
 
 
 def jpeg(pixels: Bytes) -> bytes:
-    """8-bit sRGB (H, W, 3) as a JPEG."""
-    file = BytesIO()
-    Image.fromarray(pixels).save(file, "JPEG", quality=QUALITY, subsampling=0)
+    """8-bit sRGB (H, W, 3) as a JPEG; of four channels without the last."""
+    file, (height, width, channels) = BytesIO(), pixels.shape
+    kind = "RGBX" if channels == 4 else "RGB"
+    image = Image.frombuffer(kind, (width, height), np.ascontiguousarray(pixels), "raw", kind, 0, 1)
+    image.save(file, "JPEG", quality=QUALITY, subsampling=0)
     return file.getvalue()
 
 

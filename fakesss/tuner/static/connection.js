@@ -1,4 +1,5 @@
 // The WebSocket: wishes out, frames in. Never more than one wish is under way; of those made meanwhile only the newest is.
+// It leaves as soon as the frame before is here, so that the next is drawn while this one is decoded.
 
 const AGAIN_MS = [500, 1000, 2000, 4000]; // after the connection is lost, and each time that it could not be made again
 
@@ -7,7 +8,8 @@ export class Connection extends EventTarget {
   #tries = 0; // that failed, one after the other
   #number = 0;
   #waiting = null; // the newest wish that has not been sent
-  #underway = null; // {number, asked, wish}: sent, its frame not yet shown
+  #underway = null; // {number, asked, wish}: sent, its frame not yet here
+  #landed = new Set(); // numbers of frames that are here and not yet shown: two at most
   #last = null; // the last wish, to be made again by a new connection
 
   constructor() {
@@ -23,10 +25,9 @@ export class Connection extends EventTarget {
     this.#send();
   }
 
-  // The frame of the wish `number` is on the screen, or will never be: the next may come.
+  // The frame of the wish `number` is on the screen, or will never be.
   shown(number) {
-    if (number !== this.#underway?.number) return; // of a connection that was lost while it was decoded
-    this.#underway = null;
+    this.#landed.delete(number);
     this.#send();
   }
 
@@ -55,7 +56,7 @@ export class Connection extends EventTarget {
   }
 
   #send() {
-    if (!this.isOpen || this.#underway || !this.#waiting) return;
+    if (!this.isOpen || this.#underway || this.#landed.size > 1 || !this.#waiting) return;
     const { wish, asked } = this.#waiting;
     this.#waiting = null;
     this.#underway = { number: ++this.#number, asked, wish };
@@ -66,14 +67,20 @@ export class Connection extends EventTarget {
     if (typeof data === "string") {
       const message = JSON.parse(data);
       this.#tell("message", message);
-      if (message.number !== undefined) this.shown(message.number); // there will be no frame of it
+      if (message.number === undefined || message.number !== this.#underway?.number) return;
+      this.#underway = null; // there will be no frame of it
+      this.#send();
       return;
     }
     const length = new DataView(data).getUint32(0, true);
     const header = JSON.parse(new TextDecoder().decode(new Uint8Array(data, 4, length)));
     if (header.number !== this.#underway?.number) return;
+    const { asked, wish } = this.#underway;
+    this.#underway = null;
+    this.#landed.add(header.number);
+    this.#send();
     const image = new Blob([new Uint8Array(data, 4 + length)], { type: header.type });
-    this.#tell("frame", { header, image, asked: this.#underway.asked, wish: this.#underway.wish });
+    this.#tell("frame", { header, image, asked, wish });
   }
 
   #tell(name, detail) {

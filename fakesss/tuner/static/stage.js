@@ -98,6 +98,7 @@ class Stage extends EventTarget {
   async #receive({ header, image, asked, wish }) {
     try {
       const bitmap = await createImageBitmap(image, AS_IT_IS);
+      if (header.number < this.#live?.header.number) return bitmap.close(); // a smaller one was decoded sooner
       this.#live?.bitmap.close();
       // a moving frame may be smaller than the picture in whose place it stands
       const size = header.moving ? this.settings.valueIn(wish.settings, "size") : [header.width, header.height];
