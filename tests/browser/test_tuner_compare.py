@@ -11,7 +11,7 @@ import pytest
 from accessible import violations, with_axe
 from PIL import Image
 from playwright.sync_api import Browser, BrowserContext, Page, expect
-from tuner_pages import Pixels, Talk, on_canvas, opened, pinned, press, shows, wait
+from tuner_pages import Pixels, Talk, on_canvas, one_page, opened, pinned, press, shows, wait
 from tuner_server import tuned
 
 from fakesss.renderer import render_file
@@ -36,12 +36,8 @@ def url(tmp_path_factory: pytest.TempPathFactory) -> Iterator[str]:
 @pytest.fixture(scope="module")
 def opened_once(browser: Browser, url: str) -> Iterator[Talk]:
     """A page for most of these; a script error in it fails the last one."""
-    with browser.new_context(viewport={"width": 1280, "height": 800}) as context:
-        page = context.new_page()
-        errors: list[str] = []
-        page.on("pageerror", lambda error: errors.append(str(error)))
-        yield opened(page, url)
-        assert errors == []
+    with one_page(browser, url) as talk:
+        yield talk
 
 
 @pytest.fixture

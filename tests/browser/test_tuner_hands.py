@@ -6,7 +6,7 @@ from typing import Any
 import numpy as np
 import pytest
 from playwright.sync_api import Browser, CDPSession, Page, expect
-from tuner_pages import Talk, by_hand, drag, middle, opened, wait
+from tuner_pages import Talk, by_hand, drag, middle, one_page, opened, wait
 from tuner_server import tuned
 
 from fakesss.scene import Scene
@@ -30,12 +30,8 @@ def url(tmp_path_factory: pytest.TempPathFactory) -> Iterator[str]:
 @pytest.fixture(scope="module")
 def opened_once(browser: Browser, url: str) -> Iterator[Talk]:
     """A page for all of these; a script error in it fails the last one."""
-    with browser.new_context(viewport={"width": 1280, "height": 800}) as context:
-        page = context.new_page()
-        errors: list[str] = []
-        page.on("pageerror", lambda error: errors.append(str(error)))
-        yield opened(page, url)
-        assert errors == []
+    with one_page(browser, url) as talk:
+        yield talk
 
 
 @pytest.fixture

@@ -9,7 +9,7 @@ from urllib.parse import quote
 
 import pytest
 from playwright.sync_api import Browser, Page, expect
-from tuner_pages import Talk, drag, link, opened, panel, wait
+from tuner_pages import Talk, drag, link, one_page, opened, panel, wait
 from tuner_server import tuned
 
 from fakesss.scene import Scene
@@ -41,12 +41,8 @@ def url(folder: Path) -> Iterator[str]:
 @pytest.fixture(scope="module")
 def opened_once(browser: Browser, url: str) -> Iterator[Talk]:
     """A page for all of these; a script error in it fails the last one."""
-    with browser.new_context(permissions=["clipboard-read", "clipboard-write"]) as context:
-        page = context.new_page()
-        errors: list[str] = []
-        page.on("pageerror", lambda error: errors.append(str(error)))
-        yield opened(page, url)
-        assert errors == []
+    with one_page(browser, url, permissions=["clipboard-read", "clipboard-write"]) as talk:
+        yield talk
 
 
 @pytest.fixture

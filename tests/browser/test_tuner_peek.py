@@ -4,7 +4,7 @@ from collections.abc import Iterator
 
 import pytest
 from playwright.sync_api import Browser, Page, Route, expect
-from tuner_pages import Talk, link, on_canvas, opened, panel, pinned, press, shows, wait
+from tuner_pages import Talk, link, on_canvas, one_page, panel, pinned, press, shows, wait
 from tuner_server import tuned
 
 from fakesss.scene import Scene
@@ -37,12 +37,8 @@ def url(tmp_path_factory: pytest.TempPathFactory) -> Iterator[str]:
 @pytest.fixture(scope="module")
 def talk(browser: Browser, url: str) -> Iterator[Talk]:
     """A page for all of these; a script error in it fails the last one."""
-    with browser.new_context(viewport={"width": 1280, "height": 800}) as context:
-        page = context.new_page()
-        errors: list[str] = []
-        page.on("pageerror", lambda error: errors.append(str(error)))
-        yield opened(page, url)
-        assert errors == []
+    with one_page(browser, url) as talk:
+        yield talk
 
 
 @pytest.fixture

@@ -3,13 +3,14 @@
 import base64
 import json
 import struct
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
 from typing import Any
 from urllib.parse import quote
 
 import numpy as np
 import numpy.typing as npt
-from playwright.sync_api import Page, WebSocket, WebSocketRoute
+from playwright.sync_api import Browser, Page, WebSocket, WebSocketRoute
 
 Pixels = npt.NDArray[np.uint8]
 Told = dict[str, Any]
@@ -98,6 +99,17 @@ def wait(page: Page, condition: Callable[[], object]) -> None:
             return
         page.wait_for_timeout(10)
     raise AssertionError("it did not happen")
+
+
+@contextmanager
+def one_page(browser: Browser, url: str, **context: Any) -> Iterator[Talk]:
+    """A page for several tests, 1280 x 800; a script error in it fails the last of them."""
+    with browser.new_context(viewport={"width": 1280, "height": 800}, **context) as profile:
+        page = profile.new_page()
+        errors: list[str] = []
+        page.on("pageerror", lambda error: errors.append(str(error)))
+        yield opened(page, url)
+        assert errors == []
 
 
 def opened(page: Page, url: str) -> Talk:
