@@ -192,33 +192,29 @@ def answered(notes: dict[str, Any]) -> list[Answered]:
     """Every moving picture with the first input that it answers: one heard after the wish before it had left."""
     frames = {frame["number"]: frame for frame in notes["frames"] if frame["moving"] and frame["shown"]}
     sent = {wish["number"]: wish["at"] for wish in notes["sent"]}
-    for frame in notes["frames"]:
-        if frame["number"] in sent:
-            frame["sent"] = sent[frame["number"]]
+    drawn = [drawing(frame, sent[frame["number"]]) for frame in notes["frames"] if frame["number"] in sent]
     found = []
     for before, wish in pairwise(notes["sent"]):
         inputs = [one["at"] for one in notes["inputs"] if before["at"] < one["heard"] <= wish["at"]]
         frame = frames.get(wish["number"])
         if not inputs or not frame:
             continue
-        times, first = frame["times"], min(inputs)
-        travel = frame["came"] - wish["at"] - times["wait"] - times["draw"] - times["encode"]
-        total, newest = frame["shown"] - first, frame["shown"] - max(inputs)
-        show = frame["shown"] - frame["came"]
-        drawing = sum(overlap(first, frame["shown"], each) for each in notes["frames"])
-        outside = total - drawing
-        found.append(Answered(total, newest, wish["at"] - first, travel=travel, show=show, outside=outside, **times))
+        first, shown, way = min(inputs), frame["shown"], travel(frame, wish["at"])
+        outside = shown - first - sum(max(0.0, min(shown, end) - max(first, start)) for start, end in drawn)
+        times = {**frame["times"], "travel": way, "show": shown - frame["came"], "outside": outside}
+        found.append(Answered(shown - first, shown - max(inputs), wish["at"] - first, **times))
     return found
 
 
-def overlap(first: float, last: float, frame: dict[str, Any]) -> float:
-    """For how long of the time between two moments a frame was being drawn."""
-    if "sent" not in frame:
-        return 0.0
-    times = frame["times"]
-    travel = frame["came"] - frame["sent"] - times["wait"] - times["draw"] - times["encode"]
-    end = frame["came"] - travel / 2 - times["encode"]
-    return max(0.0, min(last, end) - max(first, end - times["draw"]))
+def travel(frame: dict[str, Any], sent: float) -> float:
+    """What passed between sending and coming that was not spent at the server."""
+    return float(frame["came"] - sent - sum(frame["times"].values()))
+
+
+def drawing(frame: dict[str, Any], sent: float) -> tuple[float, float]:
+    """When it was begun and drawn, if the way back takes half of its travel."""
+    end = frame["came"] - travel(frame, sent) / 2 - frame["times"]["encode"]
+    return end - frame["times"]["draw"], end
 
 
 def summary(what: tuple[str, int, int], notes: Sequence[dict[str, Any]], seconds: float) -> Row:

@@ -55,7 +55,7 @@ class Viewer:
                 self._tasks.create_task(self._listen())
                 self._tasks.create_task(self._answer())
         except* WebSocketDisconnect:
-            pass
+            pass  # the tab was closed, which is how watching ends
         finally:
             self.tuner.viewers.discard(self)
         if not self.tuner.viewers:

@@ -205,15 +205,16 @@ def test_taps_fill_a_penumbra(renderer: Renderer, tmp_path: Path, size: Size, mo
 
 @pytest.mark.gl
 @pytest.mark.parametrize("size", SIZES)
-@pytest.mark.parametrize("name", ["figure:20000", "knot:20000"])
+@pytest.mark.parametrize("shape", ["figure", "knot"])
 @pytest.mark.parametrize("every", [2, 4])
-def test_a_sparse_layer_errs_most_along_outlines(renderer: Renderer, name: str, size: Size, every: int) -> None:
+def test_a_sparse_layer_errs_most_along_outlines(renderer: Renderer, shape: str, size: Size, every: int) -> None:
     """Errors of thickness, in texels a side of the sparse layer, h = 1/N apart.
 
-    Inside, bilinear interpolation of a round surface errs as h^2: the median. Once texels are smaller than triangles,
-    which are flat, most lie within one, and it errs less still. Towards an outline thickness sinks to 0 as a root, so
-    that a strip h wide errs as h^1/2: the mean falls as h^3/2, the root mean square as h.
+    Inside, bilinear interpolation of a round surface errs as h^2: the median. Towards an outline thickness sinks to 0
+    as a root, so that a strip h wide errs as h^1/2: the mean falls as h^3/2, the root mean square as h.
     """
+    # as many triangles to a texel at every size: texels within one, which is flat, would err less still
+    name = f"{shape}:{round(20_000 * (size.pixels / 48) ** 2)}"
     scene = Scene(object=name, size=(16, 16), supersampling=1).replace({"layers.resolution": every})
 
     def differences(texels: int) -> NDArray[Any]:
@@ -224,7 +225,7 @@ def test_a_sparse_layer_errs_most_along_outlines(renderer: Renderer, name: str, 
 
     found = {count: differences(count) for count in (size.pixels * k // 2 for k in (1, 2, 3, 4))}
     label = f"{name}, second layer at every {every}th sample"
-    holds(f"{label}, median", list(found), lambda n: float(np.median(np.abs(found[n]))), 1.6, 3.6)
+    holds(f"{label}, median", list(found), lambda n: float(np.median(np.abs(found[n]))), 1.6, 2.6)
     holds(f"{label}, mean", list(found), lambda n: mean(found[n]), 1.25, 2.0)
     holds(f"{label}, rms", list(found), lambda n: rms(found[n]), 0.7, 1.5)
 
